@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "app/session.h"
+#include "files/joined.h"
 #include "files/output_file.h"
 #include "relumine/in/environment_files.h"
 #include "relumine/in/mesh.h"
@@ -128,6 +130,41 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
                                 place_text(scene.mesh, camera->target), camera->fov_degrees));
 }
 
+std::vector<std::string> absent_names(const prt::Scene& scene) {
+    std::vector<std::string> result;
+    for (const prt::AbsentGroup& own : scene.absent)
+        result.push_back(scene.mesh.groups[own.group]);
+    return result;
+}
+
+/// What of the scene's things can move, and what is not as it was precomputed.
+void say_groups(const prt::Scene& scene, const Session& session) {
+    if (scene.mesh.groups.empty())
+        return session.say("groups              none can move (`precompute --movable` keeps them)");
+    constexpr std::size_t MostNames = 12;
+    std::vector<std::string> names = scene.mesh.groups;
+    const std::size_t count = names.size();
+    if (count > MostNames) {
+        names.resize(MostNames);
+        names.emplace_back("...");
+    }
+    session.say(fmt::format("groups              {} that can move: {}{}", count,
+                            files::joined(names, ", "),
+                            scene.settings.rim_step ? "; some have moved" : ""));
+    if (const std::vector<std::string> away = absent_names(scene); !away.empty())
+        session.say(fmt::format("taken away          {}", files::joined(away, ", ")));
+}
+
+std::string bounces_text(const prt::Scene& scene) {
+    if (!scene.bounces)
+        return "none";
+    return fmt::format("{}; on albedo 1, a further bounce keeps at most {:.0f} % of the light",
+                       scene.settings.bounce_tolerance > 0.0f
+                           ? fmt::format("within {}", scene.settings.bounce_tolerance)
+                           : "all, by colours that may change",
+                       100.0f * scene.bounces->spectral_radius);
+}
+
 void describe_scene(const InfoArguments& options, const Session& session) {
     const prt::Scene scene = prt::load_scene(options.path); // which checks all of it
     const prt::SceneSettings& settings = scene.settings;
@@ -151,6 +188,8 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                                               settings.floor_added)));
     session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
                             counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
+    session.say(fmt::format("bounces             {}", bounces_text(scene)));
+    say_groups(scene, session);
     say_lamps(scene.lamps.names(), session);
     for (const std::string& line : settings.left_out)
         session.say(fmt::format("left out            {}", line));
@@ -164,6 +203,10 @@ void describe_scene(const InfoArguments& options, const Session& session) {
                            {"bias", settings.bias},
                            {"floor", settings.floor_vertices},
                            {"lamps", scene.lamps.names()},
+                           {"bounces", scene.bounces.has_value()},
+                           {"groups", scene.mesh.groups},
+                           {"have_moved", scene.settings.rim_step.has_value()},
+                           {"taken_away", absent_names(scene)},
                            {"left_out", settings.left_out},
                            {"file_bytes", file_bytes}});
     if (options.check)

@@ -1,9 +1,8 @@
-#include <cstdio>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "app/command_line/command_line.h"
+#include "app/command_line/printed.h"
 #include "app/program.h"
 #include "files/parallel.h"
 #include "relumine/version.h"
@@ -23,10 +22,7 @@ int main(int argc, char** argv) {
             thread_limit.emplace(session.num_threads);
     });
     const auto run = [&] {
-        std::fputs(program.run({argv + 1, argv + argc}).c_str(), stdout);
-        // What was printed may still be in the buffer: a full disk behind `> file` shows only here.
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-            throw std::runtime_error("cannot write to standard output");
+        app::print(program.run({argv + 1, argv + argc}));
     };
     return app::exit_code_of(program, run,
                              [&](const std::string& message) { session.complain(message); });

@@ -16,6 +16,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "app/command_line/printed.h"
 #include "files/output_file.h"
 #include "files/printable.h"
 #include "relumine/in/shared_work.h"
@@ -23,6 +24,8 @@
 namespace relumine::app {
 
 namespace {
+
+// To stderr by fputs() alone: fmt::print() throws where it cannot be written.
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
@@ -94,7 +97,7 @@ void say_waiting() {
     const auto message = std::exchange(shared().waiting_message, {});
     if (!message || shared().is_said)
         return;
-    fmt::print(stderr, "relumine-mpi: {}\n", message());
+    std::fputs(fmt::format("relumine-mpi: {}\n", message()).c_str(), stderr);
     shared().is_waiting_said = true;
 }
 
@@ -104,6 +107,9 @@ Session::Session() {
     // A write beyond the process's limit fails then like one on a full disk, with a message and
     // nothing left behind.
     std::signal(SIGXFSZ, SIG_IGN);
+    // A pipe that nobody reads any more is an error of the write, which print() takes for the end
+    // of what is wanted, and ffmpeg's end is said by whoever feeds it.
+    std::signal(SIGPIPE, SIG_IGN);
     // Signals are taken by one thread, so that whatever it calls need not be safe inside a handler.
     // Threads started later inherit the mask.
     const sigset_t signals = signals_to_stop();
@@ -228,12 +234,14 @@ std::function<void(double)> Session::progress(const std::string& what) {
             if (time - state.last_shown < 0.1 && fraction < 1.0)
                 return;
             state.last_shown = time;
-            fmt::print(stderr, "\r{}: {:3.0f} %{}   ", what, 100.0 * fraction, left);
+            std::fputs(fmt::format("\r{}: {:3.0f} %{}   ", what, 100.0 * fraction, left).c_str(),
+                       stderr);
             std::fflush(stderr);
             bar_open_ = true;
             shared().is_bar_open = true;
         } else if (state.lines.is_due(fraction, elapsed)) {
-            fmt::print(stderr, "{}: {:.0f} %{}\n", what, 100.0 * fraction, left);
+            std::fputs(fmt::format("{}: {:.0f} %{}\n", what, 100.0 * fraction, left).c_str(),
+                       stderr);
         }
     };
 }
@@ -279,7 +287,6 @@ void Session::show_run() const {
         fmt::format("{}: {:.0f} %{}{}", run_->what, 100.0 * fraction,
                     run_->estimate.present().empty() ? "" : ", " + run_->estimate.present(),
                     left ? fmt::format(", about {} left", duration(*left)) : "");
-    // Not fmt::print, which throws where stderr cannot be written.
     if (::isatty(STDERR_FILENO) != 0) {
         std::fputs(("\r" + text + "\033[K").c_str(), stderr);
         std::fflush(stderr);
@@ -297,7 +304,7 @@ prt::Work Session::work(const std::string& what) {
 void Session::end_progress() const {
     const std::scoped_lock lock(mutex_);
     if (bar_open_)
-        fmt::print(stderr, "\r\033[K");
+        std::fputs("\r\033[K", stderr);
     bar_open_ = false;
     shared().is_bar_open = false;
 }
@@ -306,8 +313,7 @@ void Session::say(const std::string& line) const {
     if (json || quiet)
         return;
     end_progress();
-    fmt::print("{}\n", files::printable(line)); // names in files may be anything
-    std::fflush(stdout); // whoever reads along, as with --watch, need not wait for more
+    print(files::printable(line) + "\n"); // names in files may be anything
 }
 
 void Session::detail(const std::string& line) const {
@@ -333,7 +339,6 @@ void Session::complain(const std::string& message, const char* program) const {
     if (shared().is_waiting_said && message.starts_with("cancelled"))
         return;
     shared().is_said = stop_source_.stop_requested();
-    // Not fmt::print, which throws where stderr cannot be written.
     std::fputs(fmt::format("{}: {}\n", program, one_line(message)).c_str(), stderr);
 }
 
@@ -350,8 +355,7 @@ void Session::report(Report result) const {
         files::update(result, std::exchange(more_fields_, Report()));
         result.set("warnings", std::exchange(warnings_, {}));
     }
-    fmt::print("{}\n", result.text(2));
-    std::fflush(stdout);
+    print(result.text(2) + "\n");
 }
 
 std::string one_line(std::string message) {

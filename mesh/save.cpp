@@ -131,30 +131,29 @@ void save_lit(const std::filesystem::path& path, const TriangleMesh& mesh,
 std::vector<std::string> save(const std::filesystem::path& path, const TriangleMesh& mesh) {
     const std::string extension = files::extension_of(path);
     std::vector<std::string> left_out;
-    if (!mesh.textures.empty())
+    if (!mesh.textures.empty() && extension != ".glb")
         left_out.emplace_back("images of textures");
     if (!mesh.lights.empty())
         left_out.emplace_back("lights");
-    if (extension == ".ply" || extension == ".glb") {
+    if (extension == ".ply") {
         const auto leave_out = [&](bool has, const char* what) {
             if (has)
                 left_out.push_back(
-                    fmt::format("{}, which a {} file of ours does not hold", what, extension));
+                    fmt::format("{}, which a .ply file of ours does not hold", what));
         };
         leave_out(!mesh.corner_uvs.empty(), "uvs of corners");
-        leave_out(!mesh.uvs.empty() && extension == ".glb", "uvs");
-        leave_out(!mesh.triangle_materials.empty() && extension == ".ply", "materials");
+        leave_out(!mesh.triangle_materials.empty(), "materials");
         leave_out(!mesh.triangle_groups.empty(), "groups");
-        if (extension == ".ply") {
-            write(path, ply(mesh, "Relumine", {.colors = mesh.colors, .uvs = mesh.uvs}));
-        } else {
-            try {
-                check(mesh, mesh.colors.empty() ? mesh.positions : mesh.colors);
-                write(path, glb(mesh));
-            } catch (const std::runtime_error& error) {
-                throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
-            }
+        write(path, ply(mesh, "Relumine", {.colors = mesh.colors, .uvs = mesh.uvs}));
+    } else if (extension == ".glb") {
+        std::string content;
+        try {
+            check(mesh, mesh.colors.empty() ? mesh.positions : mesh.colors);
+            content = glb(mesh, left_out);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
         }
+        write(path, content);
     } else if (extension == ".obj") {
         std::filesystem::path library;
         if (!mesh.triangle_materials.empty()) {

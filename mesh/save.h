@@ -23,12 +23,12 @@ void save_lit(const std::filesystem::path& path, const TriangleMesh& mesh,
               std::span<const glm::vec3> radiance);
 
 /// Writes the mesh as it is, for other programs and for load(): .ply (binary little-endian:
-/// normals, float colours, uvs of vertices), .glb (also materials) or .obj (also uvs of corners,
-/// groups, and the names and numbers of materials in a .mtl file beside it). Each file appears
-/// whole or not at all.
+/// normals, float colours, uvs of vertices), .glb (all of it: uvs, groups as nodes, materials with
+/// the images of their textures) or .obj (uvs, groups, and the names and numbers of materials in a
+/// .mtl file beside it). Each file appears whole or not at all.
 ///
-/// Returns what is left out, a line each: textures; for .ply and .glb groups and uvs of corners,
-/// for .ply materials, for .glb uvs.
+/// Returns what is left out, a line each: textures but for .glb; for .ply groups, uvs of corners
+/// and materials.
 /// Throws:  std::runtime_error naming the path.
 std::vector<std::string> save(const std::filesystem::path& path, const TriangleMesh& mesh);
 

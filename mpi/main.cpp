@@ -152,7 +152,7 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
         require_command(arguments);
         const std::string text = program.run(arguments);
         if (is_first)
-            std::fputs(text.c_str(), stdout);
+            app::print(text);
         team.meet();
     };
     return code_of(program, team, work, complain);

@@ -1,7 +1,7 @@
 // The package's scene in node: light is as bright as it should be, in each vertex that GLTFLoader gives.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
-import { readFile } from 'node:fs/promises';
+import { access, readFile } from 'node:fs/promises';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
@@ -11,6 +11,15 @@ const find = (name) => import(pathToFileURL(require.resolve(name)));
 const { Relighter } = await find('relumine');
 const { LitObject } = await find('relumine/three');
 const { GLTFLoader } = await find('three/addons/loaders/GLTFLoader.js');
+
+// The page's import map leads to files.
+const example = 'node_modules/relumine/example/';
+const page = await readFile(`${example}index.html`, 'utf8');
+const {imports} = JSON.parse(page.match(/<script type="importmap">([^]*?)<\/script>/)[1]);
+for (const name of ['three', 'three/addons/', 'relumine', 'relumine/three'])
+    await access(`${example}${imports[name]}`);
+for (const [, name] of (await readFile(`${example}page.js`, 'utf8')).matchAll(/(?:from|import\() ?'three\/addons\/([^']+)'/g))
+    await access(`${example}${imports['three/addons/']}${name}`);
 
 const bytes = await readFile('node_modules/relumine/example/scene.glb');
 const { scene } = await new GLTFLoader().parseAsync(Uint8Array.from(bytes).buffer, '');

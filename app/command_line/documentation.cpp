@@ -1,6 +1,5 @@
 #include "app/command_line/documentation.h"
 
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -8,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_line/printed.h"
 #include "app/command_table.h"
 #include "files/joined.h"
 #include "files/output_file.h"
@@ -128,7 +128,7 @@ void add_completion(CommandLine& program) {
     command.on_run([output, &program] {
         const std::string script = bash_completion(program.table());
         if (output->empty())
-            std::fputs(script.c_str(), stdout);
+            print(script);
         else
             files::save_text(*output, script);
     });
@@ -138,7 +138,7 @@ void add_help(CommandLine& program) {
     Command command = program.root().add_command("help", "print the options of a command");
     auto words = std::make_shared<std::vector<std::string>>();
     command.add(row("COMMAND", *words, "a command; none: the program's own help"));
-    command.on_run([words, &program] { std::fputs(program.help(*words).c_str(), stdout); });
+    command.on_run([words, &program] { print(program.help(*words)); });
 }
 
 } // namespace relumine::app

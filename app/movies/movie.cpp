@@ -145,8 +145,6 @@ fs::path find_ffmpeg(const std::string& movie) {
 void make_movie(const fs::path& ffmpeg, const std::string& movie,
                 std::span<const std::string> pictures, double frames_per_second,
                 const std::stop_token& stop) {
-    // When ffmpeg dies, the pipe's end is an error here, not the end of this program.
-    std::signal(SIGPIPE, SIG_IGN);
     files::OutputFile output{fs::path(movie)};
     const files::OutputFile complaints{fs::path(movie + ".log")}; // never committed
     Encoder encoder(ffmpeg, output.temporary(), complaints.temporary(), frames_per_second);

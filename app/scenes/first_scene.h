@@ -19,4 +19,10 @@ namespace relumine::app {
 [[nodiscard]] Scene first_scene(const std::string& path, const MeshOptions& read,
                                 const std::function<void(const Mesh&)>& before, Session& session);
 
+/// Precomputes a mesh as `relumine precompute` does by itself, without a floor, and keeps its
+/// groups. Says what was done.
+///
+/// Throws:  as load_mesh() and precompute().
+[[nodiscard]] Scene precomputed_scene(const std::string& path, Session& session);
+
 } // namespace relumine::app

@@ -422,6 +422,21 @@ Scene first_scene(const std::string& path, const MeshOptions& read,
     }
 }
 
+Scene precomputed_scene(const std::string& path, Session& session) {
+    Stopwatch watch;
+    PrecomputeArguments options;
+    options.mesh = path;
+    Mesh mesh = made_mesh(options, session);
+    PrecomputeReport facts;
+    const PrecomputeOptions keeps_groups{.movable = !mesh.geometry.groups.empty()};
+    Scene scene = precomputed(std::move(mesh), keeps_groups, precompute_work(session), facts);
+    session.end_progress();
+    say_refinement(facts, session);
+    session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s", path, facts.num_vertices,
+                            facts.clusters.num_clusters, watch.total()));
+    return scene;
+}
+
 void add_precompute(Command& program, Session& session) {
     Command command =
         program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <set>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include "files/json.h"
+#include "mesh/formats/glb_materials.h"
 
 namespace relumine::mesh {
 
@@ -62,6 +65,12 @@ struct Arrays {
     std::size_t append(std::span<const glm::vec3> values) {
         return append(values, {Float, "VEC3", ArrayBuffer}, values.size());
     }
+    /// Appends the file of an image, with a view of its own.
+    void append_image(std::span<const std::byte> file) {
+        views.push_back({{"buffer", 0}, {"byteLength", file.size()}, {"byteOffset", bytes.size()}});
+        bytes.append(reinterpret_cast<const char*>(file.data()), file.size());
+        bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
+    }
 };
 
 /// Sets the exact bounds of positions, which the format demands.
@@ -102,9 +111,10 @@ std::string container(std::string json, const std::string& bytes) {
     return file;
 }
 
-void check_size(const TriangleMesh& mesh, std::uint64_t bytes_per_vertex) {
+void check_size(const TriangleMesh& mesh, std::uint64_t bytes_per_vertex,
+                std::uint64_t num_more = 0) {
     const std::uint64_t num_bytes = std::uint64_t{mesh.num_vertices()} * bytes_per_vertex +
-                                    std::uint64_t{mesh.num_triangles()} * 12;
+                                    std::uint64_t{mesh.num_triangles()} * 12 + num_more;
     // Leaves room for the JSON part.
     constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
@@ -113,15 +123,15 @@ void check_size(const TriangleMesh& mesh, std::uint64_t bytes_per_vertex) {
 }
 
 /// Appends positions and normals. Returns the attributes of primitives.
-files::Json append_shape(Arrays& arrays, const TriangleMesh& mesh) {
-    std::vector<glm::vec3> normals = mesh.normals;
-    normals.resize(mesh.num_vertices(), glm::vec3(0.0f));
+files::Json append_shape(Arrays& arrays, std::span<const glm::vec3> positions,
+                         std::vector<glm::vec3> normals) {
+    normals.resize(positions.size(), glm::vec3(0.0f));
     for (glm::vec3& normal : normals)
         if (normal == glm::vec3(0.0f))
             normal.y = 1.0f;
     files::Json attributes;
-    attributes.set("POSITION", arrays.append(std::span<const glm::vec3>(mesh.positions)));
-    set_bounds(arrays.accessors.back(), mesh.positions);
+    attributes.set("POSITION", arrays.append(positions));
+    set_bounds(arrays.accessors.back(), positions);
     attributes.set("NORMAL", arrays.append(std::span<const glm::vec3>(normals)));
     return attributes;
 }
@@ -138,98 +148,119 @@ std::size_t append_indices(Arrays& arrays, std::span<const Triangle> triangles) 
                          3 * triangles.size());
 }
 
-/// A file with one mesh, moved by its offset. `extensions` are the names of those that its
-/// materials use.
-std::string file_of(const Arrays& arrays, const TriangleMesh& mesh, files::Json materials,
-                    files::Json primitives, const std::set<std::string>& extensions) {
+/// Returns the document without its materials. Nodes have a mesh each, and are moved by `offset`.
+files::Json document_of(const Arrays& arrays, files::Json::Array nodes, files::Json meshes,
+                        const glm::dvec3& offset) {
     using files::Json;
-    Json node = {{"mesh", 0}};
-    if (const glm::dvec3& offset = mesh.offset; offset != glm::dvec3(0.0))
-        node.set("translation", Json::Array{offset.x, offset.y, offset.z});
-    Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
-                     {"buffers", Json::Array{{{"byteLength", arrays.bytes.size()}}}},
-                     {"bufferViews", arrays.views},
-                     {"accessors", arrays.accessors},
-                     {"materials", std::move(materials)},
-                     {"meshes", Json::Array{{{"primitives", std::move(primitives)}}}},
-                     {"nodes", Json::Array{std::move(node)}},
-                     {"scenes", Json::Array{{{"nodes", Json::Array{0}}}}},
-                     {"scene", 0}};
-    if (!extensions.empty())
-        document.set("extensionsUsed",
-                     std::vector<std::string>(extensions.begin(), extensions.end()));
-    return container(document.text(), arrays.bytes);
+    Json::Array roots;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        nodes[i].set("mesh", i);
+        if (offset != glm::dvec3(0.0))
+            nodes[i].set("translation", Json::Array{offset.x, offset.y, offset.z});
+        roots.push_back(i);
+    }
+    return {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
+            {"buffers", Json::Array{{{"byteLength", arrays.bytes.size()}}}},
+            {"bufferViews", arrays.views},
+            {"accessors", arrays.accessors},
+            {"meshes", std::move(meshes)},
+            {"nodes", std::move(nodes)},
+            {"scenes", Json::Array{{{"nodes", std::move(roots)}}}},
+            {"scene", 0}};
 }
 
-/// Phong's exponent becomes a roughness of about the same highlight. Adds the extensions that the
-/// material needs.
-files::Json material_of(const Material& material, std::set<std::string>& used) {
-    using files::Json;
-    const bool is_phong = material.model == MaterialModel::Phong;
-    const double roughness = !is_phong ? double{material.roughness}
-                             : material.specular == glm::vec3(0.0f)
-                                 ? 1.0
-                                 : std::pow(2.0 / (double{material.exponent} + 2.0), 0.25);
-    Json result = {{"name", material.name},
-                   {"pbrMetallicRoughness",
-                    {{"baseColorFactor",
-                      Json::Array{double{material.base_color.r}, double{material.base_color.g},
-                                  double{material.base_color.b}, 1.0}},
-                     {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
-                     {"roughnessFactor", roughness}}}};
-    if (material.is_double_sided)
-        result.set("doubleSided", true);
-    const glm::vec3& emission = material.emission;
-    // Factors are at most 1; the extension has the rest.
-    const float strength = std::max({emission.r, emission.g, emission.b});
-    Json extensions = Json::Object{};
-    if (strength > 0.0f)
-        result.set("emissiveFactor", emission / std::max(strength, 1.0f));
-    if (strength > 1.0f)
-        extensions.set("KHR_materials_emissive_strength", {{"emissiveStrength", double{strength}}});
-    if (material.transmission > 0.0f)
-        extensions.set("KHR_materials_transmission",
-                       {{"transmissionFactor", double{material.transmission}}});
-    if (material.thickness > 0.0f) {
-        Json volume = {{"thicknessFactor", double{material.thickness}},
-                       {"attenuationColor", material.attenuation_color}};
-        if (std::isfinite(material.attenuation_distance)) // its default is infinite
-            volume.set("attenuationDistance", double{material.attenuation_distance});
-        extensions.set("KHR_materials_volume", std::move(volume));
+/// A group of a mesh by itself: the mesh's vertices that it has, in their order, and its triangles.
+/// A vertex that has several uvs comes again behind the others.
+struct Part {
+    std::vector<std::uint32_t> vertices = {};
+    std::vector<glm::vec2> uvs = {};
+    /// By material
+    std::vector<std::vector<Triangle>> triangles = {};
+
+    template<class Value>
+    [[nodiscard]] std::vector<Value> of(const std::vector<Value>& all) const {
+        std::vector<Value> result;
+        for (std::size_t i = 0; i < vertices.size() && !all.empty(); ++i)
+            result.push_back(all[vertices[i]]);
+        return result;
     }
-    if (material.dispersion > 0.0f)
-        extensions.set("KHR_materials_dispersion", {{"dispersion", double{material.dispersion}}});
-    if (material.coat > 0.0f)
-        extensions.set("KHR_materials_clearcoat",
-                       {{"clearcoatFactor", double{material.coat}},
-                        {"clearcoatRoughnessFactor", double{material.coat_roughness}}});
-    if (material.sheen != glm::vec3(0.0f))
-        extensions.set("KHR_materials_sheen",
-                       {{"sheenColorFactor", material.sheen},
-                        {"sheenRoughnessFactor", double{material.sheen_roughness}}});
-    if (material.film > 0.0f)
-        extensions.set("KHR_materials_iridescence",
-                       {{"iridescenceFactor", double{material.film}},
-                        {"iridescenceIor", double{material.film_ior}},
-                        {"iridescenceThicknessMinimum", double{material.film_thickness_at_0}},
-                        {"iridescenceThicknessMaximum", double{material.film_thickness_at_1}}});
-    if (material.anisotropy > 0.0f)
-        extensions.set("KHR_materials_anisotropy",
-                       {{"anisotropyStrength", double{material.anisotropy}},
-                        {"anisotropyRotation", double{material.anisotropy_rotation}}});
-    if (material.ior != 1.5f)
-        extensions.set("KHR_materials_ior", {{"ior", double{material.ior}}});
-    if (material.specular_strength != 1.0f || material.specular_tint != glm::vec3(1.0f))
-        extensions.set("KHR_materials_specular",
-                       {{"specularFactor", double{material.specular_strength}},
-                        {"specularColorFactor", material.specular_tint}});
-    if (material.model == MaterialModel::Unlit)
-        extensions.set("KHR_materials_unlit", Json::Object{});
-    for (const auto& [name, value] : extensions.members())
-        used.insert(name);
-    if (extensions.size() != 0)
-        result.set("extensions", extensions);
-    return result;
+};
+
+/// Returns the parts of a mesh: its groups, or all of it with vertices that no triangle has.
+std::vector<Part> parts_of(const TriangleMesh& mesh, std::size_t num_materials) {
+    constexpr std::uint32_t None = ~std::uint32_t{0};
+    const bool has_groups = !mesh.triangle_groups.empty();
+    std::vector<Part> parts(has_groups ? mesh.groups.size() : 1);
+    std::vector<std::vector<std::uint32_t>> triangles(parts.size());
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+        triangles[has_groups ? mesh.triangle_groups[i] : 0].push_back(i);
+    std::vector<std::uint32_t> index(mesh.num_vertices(), None);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        Part& part = parts[p];
+        if (has_groups) {
+            for (const std::uint32_t i : triangles[p])
+                part.vertices.insert(part.vertices.end(), mesh.triangles[i].begin(),
+                                     mesh.triangles[i].end());
+            std::sort(part.vertices.begin(), part.vertices.end());
+            part.vertices.erase(std::unique(part.vertices.begin(), part.vertices.end()),
+                                part.vertices.end());
+        } else {
+            part.vertices.resize(mesh.num_vertices());
+            std::iota(part.vertices.begin(), part.vertices.end(), 0u);
+        }
+        for (std::uint32_t i = 0; i < part.vertices.size(); ++i)
+            index[part.vertices[i]] = i;
+        part.uvs = part.of(mesh.uvs);
+        part.triangles.resize(num_materials);
+        std::vector<bool> has_uv(part.vertices.size());
+        std::map<std::tuple<std::uint32_t, float, float>, std::uint32_t> copies;
+        if (!mesh.corner_uvs.empty())
+            part.uvs.resize(part.vertices.size(), glm::vec2(0.0f));
+        for (const std::uint32_t i : triangles[p]) {
+            Triangle own = mesh.triangles[i];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = own[k];
+                own[k] = index[vertex];
+                if (mesh.corner_uvs.empty())
+                    continue;
+                const glm::vec2& uv = mesh.corner_uvs[i][k];
+                if (!has_uv[own[k]]) {
+                    has_uv[own[k]] = true;
+                    part.uvs[own[k]] = uv;
+                } else if (part.uvs[own[k]] != uv) {
+                    const auto [copy, is_new] = copies.try_emplace(
+                        {vertex, uv.x, uv.y}, static_cast<std::uint32_t>(part.uvs.size()));
+                    own[k] = copy->second;
+                    if (is_new) {
+                        part.vertices.push_back(vertex);
+                        part.uvs.push_back(uv);
+                    }
+                }
+            }
+            part.triangles[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[i]]
+                .push_back(own);
+        }
+    }
+    return parts;
+}
+
+/// Appends the vertices of a part. Returns the attributes of its primitives.
+files::Json append_vertices(Arrays& arrays, const TriangleMesh& mesh, const Part& part,
+                            bool turns_v) {
+    files::Json attributes = append_shape(arrays, part.of(mesh.positions), part.of(mesh.normals));
+    if (!mesh.colors.empty())
+        attributes.set("COLOR_0", arrays.append(std::span<const glm::vec3>(part.of(mesh.colors))));
+    const auto set_uvs = [&](const char* name, std::vector<glm::vec2> uvs, bool turns) {
+        if (uvs.empty())
+            return;
+        for (glm::vec2& uv : uvs)
+            uv.y = turns ? 1.0f - uv.y : uv.y;
+        attributes.set(name, arrays.append(std::span<const glm::vec2>(uvs),
+                                           {Float, "VEC2", ArrayBuffer}, uvs.size()));
+    };
+    set_uvs("TEXCOORD_0", part.uvs, turns_v);
+    set_uvs("TEXCOORD_1", part.of(mesh.second_uvs), false); // glTF alone has them
+    return attributes;
 }
 
 } // namespace
@@ -237,7 +268,7 @@ files::Json material_of(const Material& material, std::set<std::string>& used) {
 std::string lit_glb(const TriangleMesh& mesh, std::span<const glm::vec3> radiance) {
     check_size(mesh, 48);
     Arrays arrays;
-    files::Json attributes = append_shape(arrays, mesh);
+    files::Json attributes = append_shape(arrays, mesh.positions, mesh.normals);
     std::vector<glm::vec3> shown(radiance.begin(), radiance.end());
     for (glm::vec3& color : shown)
         color = glm::clamp(color, 0.0f, 1.0f);
@@ -245,34 +276,48 @@ std::string lit_glb(const TriangleMesh& mesh, std::span<const glm::vec3> radianc
     attributes.set("_RADIANCE", arrays.append(radiance));
     using files::Json;
     const std::size_t indices = append_indices(arrays, mesh.triangles);
-    return file_of(arrays, mesh,
-                   Json::Array{{{"name", "lit"},
-                                {"doubleSided", true},
-                                {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}},
-                   Json::Array{primitive(attributes, indices, 0)}, {"KHR_materials_unlit"});
+    Json document = document_of(
+        arrays, {Json::Object{}},
+        Json::Array{{{"primitives", Json::Array{primitive(attributes, indices, 0)}}}}, mesh.offset);
+    document.set("materials",
+                 Json::Array{{{"name", "lit"},
+                              {"doubleSided", true},
+                              {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}});
+    document.set("extensionsUsed", Json::Array{"KHR_materials_unlit"});
+    return container(document.text(), arrays.bytes);
 }
 
-std::string glb(const TriangleMesh& mesh) {
-    check_size(mesh, 36);
+std::string glb(const TriangleMesh& mesh, std::vector<std::string>& left_out) {
+    using files::Json;
+    const GlbMaterials materials(mesh);
+    std::uint64_t num_image_bytes = 0;
+    for (const std::span<const std::byte> image : materials.images())
+        num_image_bytes += image.size();
+    check_size(mesh, 68, num_image_bytes);
     Arrays arrays;
-    files::Json attributes = append_shape(arrays, mesh);
-    if (!mesh.colors.empty())
-        attributes.set("COLOR_0", arrays.append(std::span<const glm::vec3>(mesh.colors)));
-    std::vector<Material> materials = mesh.materials;
-    if (mesh.triangle_materials.empty())
-        materials = {Material{.name = "surface"}};
-    std::vector<std::vector<Triangle>> by_material(materials.size());
-    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
-        by_material[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[i]].push_back(
-            mesh.triangles[i]);
-    files::Json::Array descriptions, primitives;
-    std::set<std::string> extensions;
-    for (std::size_t i = 0; i < materials.size(); ++i) {
-        descriptions.push_back(material_of(materials[i], extensions));
-        if (!by_material[i].empty())
-            primitives.push_back(primitive(attributes, append_indices(arrays, by_material[i]), i));
+    Json::Array nodes, meshes;
+    const std::vector<Part> parts =
+        parts_of(mesh, mesh.triangle_materials.empty() ? 1 : mesh.materials.size());
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (parts[p].vertices.empty())
+            continue;
+        const Json attributes = append_vertices(arrays, mesh, parts[p], materials.turns_v());
+        Json::Array primitives;
+        for (std::size_t i = 0; i < parts[p].triangles.size(); ++i)
+            if (!parts[p].triangles[i].empty())
+                primitives.push_back(
+                    primitive(attributes, append_indices(arrays, parts[p].triangles[i]), i));
+        meshes.push_back({{"primitives", std::move(primitives)}});
+        nodes.push_back(mesh.triangle_groups.empty() ? Json(Json::Object{})
+                                                     : Json{{"name", mesh.groups[p]}});
     }
-    return file_of(arrays, mesh, std::move(descriptions), std::move(primitives), extensions);
+    const std::size_t first_view = arrays.views.size();
+    for (const std::span<const std::byte> image : materials.images())
+        arrays.append_image(image);
+    Json document = document_of(arrays, std::move(nodes), std::move(meshes), mesh.offset);
+    materials.describe(document, first_view);
+    left_out.insert(left_out.end(), materials.left_out().begin(), materials.left_out().end());
+    return container(document.text(), arrays.bytes);
 }
 
 } // namespace relumine::mesh

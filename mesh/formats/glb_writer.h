@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mesh/triangle_mesh.h"
 
@@ -18,11 +19,14 @@ namespace relumine::mesh {
 ///          GiB).
 [[nodiscard]] std::string lit_glb(const TriangleMesh& mesh, std::span<const glm::vec3> radiance);
 
-/// Returns the mesh as it is: positions, normals, and colours where it has them; a primitive
-/// for each material that triangles use, with its numbers, without images. There are no uvs: other
-/// formats count v from the other end, and a mesh does not say which.
+/// Returns the mesh as it is: positions, normals, uvs, and colours where it has them; a node for
+/// each group, and in it a primitive for each material that triangles use. Materials have their
+/// numbers and the images of their textures, in the files that they came from. Without groups all
+/// vertices keep their numbers, unless some have several uvs: those come again behind the others.
+/// Uvs of other formats count v from below, and are turned.
 ///
+/// Adds what is left out, a line each.
 /// Throws:  as above.
-[[nodiscard]] std::string glb(const TriangleMesh& mesh);
+[[nodiscard]] std::string glb(const TriangleMesh& mesh, std::vector<std::string>& left_out);
 
 } // namespace relumine::mesh

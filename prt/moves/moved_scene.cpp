@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -280,7 +281,6 @@ std::vector<std::uint64_t> changed_blocks(const VisibleCounts& counts, const Sce
 
 SceneChange outline(const SceneChange& first, const SceneChange& second) {
     SceneChange result;
-    result.group = second.group;
     for (const SceneChange* change : {&first, &second}) {
         for (const CountsPatch::Word& word : change->counts.words)
             result.counts.words.push_back({.word = word.word, .clusters = word.clusters});
@@ -319,7 +319,7 @@ SceneChange change_of(const Scene& scene, std::uint32_t group, Taken taken, cons
     auto& [before, blockers, after, blockers_after] = taken;
     require_places(after.positions, scene.settings.bias);
     SceneChange change;
-    change.group = group;
+    change.groups = {group};
     change.rim_step = rim_step_of(scene);
     change.difference.around = {no_box(), no_box()};
     if (scene.blockers) {
@@ -431,6 +431,86 @@ SceneChange posed(const Scene& scene, std::uint32_t group, std::span<const glm::
 
 namespace {
 
+template<typename Value>
+void append(std::vector<Value>& values, const std::vector<Value>& more) {
+    values.insert(values.end(), more.begin(), more.end());
+}
+
+/// Sorts numbers, and the lists that go with them and are not empty.
+template<typename... Values>
+void sort_by(std::vector<std::uint32_t>& numbers, std::vector<Values>&... lists) {
+    std::vector<std::size_t> order(numbers.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return numbers[i]; });
+    const auto sort = [&](auto& values) {
+        auto sorted = values;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            sorted[i] = values[order[i]];
+        values = std::move(sorted);
+    };
+    (sort(lists), ...);
+    sort(numbers);
+}
+
+/// Lets every two neighbours among boxes share one until there are so few that rays find them soon.
+void thin_out(std::vector<mesh::Bounds>& boxes) {
+    constexpr std::size_t MostBoxes = 256; // of eight groups each has all its own
+    while (boxes.size() > MostBoxes) {
+        for (std::size_t i = 0; i + 1 < boxes.size(); i += 2)
+            include(boxes[i], boxes[i + 1]);
+        for (std::size_t i = 0; 2 * i < boxes.size(); ++i)
+            boxes[i] = boxes[2 * i];
+        boxes.resize((boxes.size() + 1) / 2);
+    }
+}
+
+} // namespace
+
+SceneChange joined(const Scene& scene, std::vector<SceneChange> changes) {
+    SceneChange all = std::move(changes.at(0));
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        const SceneChange& own = i == 0 ? all : changes[i];
+        if (own.absent)
+            throw std::invalid_argument(fmt::format(
+                "expected groups that move together, got {}, which is taken away or brought back",
+                scene.mesh.groups[own.groups.front()]));
+        if (i == 0)
+            continue;
+        if (std::ranges::count(all.groups, own.groups.front()) != 0)
+            throw std::invalid_argument(fmt::format("expected each group once, got {} twice",
+                                                    scene.mesh.groups[own.groups.front()]));
+        append(all.groups, own.groups);
+        append(all.vertices, own.vertices);
+        append(all.positions, own.positions);
+        append(all.normals, own.normals);
+        append(all.lifted, own.lifted);
+        append(all.lifts, own.lifts);
+        append(all.free_lifts, own.free_lifts);
+        append(all.triangles, own.triangles);
+        append(all.corner_tangents, own.corner_tangents);
+        append(all.blocker_vertices, own.blocker_vertices);
+        append(all.blocker_positions, own.blocker_positions);
+        append(all.receivers, own.receivers);
+        append(all.receiver_positions, own.receiver_positions);
+        append(all.receiver_normals, own.receiver_normals);
+        append(all.difference.boxes, own.difference.boxes);
+        for (std::size_t side = 0; side < all.difference.around.size(); ++side)
+            include(all.difference.around[side], own.difference.around[side]);
+        for (const std::uint32_t receiver : own.receivers)
+            all.difference.receivers[receiver] = true;
+    }
+    if (changes.size() == 1)
+        return all;
+    sort_by(all.vertices, all.positions, all.normals);
+    sort_by(all.lifted, all.lifts, all.free_lifts);
+    sort_by(all.receivers, all.receiver_positions, all.receiver_normals);
+    thin_out(all.difference.boxes);
+    set_places(scene, all);
+    return all;
+}
+
+namespace {
+
 /// What triangles become.
 std::vector<mesh::Triangle> all_away(const mesh::TriangleMesh& mesh,
                                      const std::vector<std::uint32_t>& triangles) {
@@ -449,7 +529,7 @@ SceneChange without_or_with(const Scene& scene, std::uint32_t group,
     const std::size_t side = own != nullptr ? 1 : 0;
     GroupMesh mesh = changing_group(scene, group, all);
     SceneChange change;
-    change.group = group;
+    change.groups = {group};
     change.rim_step = rim_step_of(scene);
     change.absent = scene.absent;
     change.difference.around = {no_box(), no_box()};

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -40,6 +41,11 @@ void set_places(const Scene& scene, SceneChange& change);
 [[nodiscard]] SceneChange posed(const Scene& scene, std::uint32_t group,
                                 std::span<const glm::dvec3> vertices,
                                 std::span<const glm::vec3> normals = {});
+
+/// Returns the change of several groups of a scene at once: each one is moved() or posed() there.
+///
+/// Throws:  std::invalid_argument for a group that changes twice, or is taken away or brought back.
+[[nodiscard]] SceneChange joined(const Scene& scene, std::vector<SceneChange> changes);
 
 /// Returns the same of a scene whose group is taken away, or is brought back to where it stood.
 /// Its receivers stay, and see what they see without it.

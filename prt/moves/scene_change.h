@@ -31,22 +31,22 @@ struct SceneDifference {
 ///
 /// Memory:  some 80 bytes for each vertex of the group, and the counts and bounces that are others.
 struct SceneChange {
-    /// The group's index in the scene's mesh
-    std::uint32_t group = 0;
-    /// The group's vertices, and what they have: as TriangleMesh
+    /// The indices in the scene's mesh of the groups that change: one, or those of joined()
+    std::vector<std::uint32_t> groups;
+    /// The groups' vertices, ascending, and what they have: as TriangleMesh
     std::vector<std::uint32_t> vertices;
     std::vector<glm::vec3> positions, normals;
     /// The vertices whose lifts differ, and those, as TriangleMesh and Scene::free_lifts
     std::vector<std::uint32_t> lifted;
     std::vector<glm::vec3> lifts, free_lifts;
-    /// The group's triangles, where they have tangents or are another
+    /// The groups' triangles, where they have tangents or are another
     std::vector<std::uint32_t> triangles;
     std::vector<std::array<glm::vec4, 3>> corner_tangents;
     std::vector<mesh::Triangle> corners;
-    /// The group's vertices in the blockers, where the mesh is none
+    /// The groups' vertices in the blockers, where the mesh is none
     std::vector<std::uint32_t> blocker_vertices;
     std::vector<glm::vec3> blocker_positions;
-    /// The group's triangles there, where they are another
+    /// The groups' triangles there, where they are another
     std::vector<std::uint32_t> blocker_triangles;
     std::vector<mesh::Triangle> blocker_corners;
     /// Scene::absent, where a group goes away or comes back

@@ -272,10 +272,9 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         });
 }
 
-py::dict move(const LitPointer& own, const std::string& name, const py::object& to,
-              const py::object& progress) {
+py::dict move(const LitPointer& own, const py::dict& moves, const py::object& progress) {
     return move_figures(
-        moving(own, progress, [to = group_move(name, to)](LitScene& lit, const Reins& reins) {
+        moving(own, progress, [to = group_moves(moves)](LitScene& lit, const Reins& reins) {
             return lit.moves().move(to, move_work(reins));
         }));
 }

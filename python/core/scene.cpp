@@ -9,6 +9,7 @@
 #include "options.h"
 #include "relumine/in/material_report.h"
 #include "relumine/in/mesh_files.h"
+#include "relumine/out/drawn_mesh.h"
 #include "relumine/out/first_sight.h"
 #include "run.h"
 
@@ -272,11 +273,11 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
 }
 
 /// Returns another scene, and figures.
-py::tuple moved(const std::shared_ptr<Scene>& scene, const std::string& name,
-                const py::object& matrix, const py::object& progress) {
+py::tuple moved(const std::shared_ptr<Scene>& scene, const py::dict& moves,
+                const py::object& progress) {
     using Result = std::pair<std::shared_ptr<Scene>, MoveReport>;
     const Result result =
-        in_background(progress, [scene, to = group_move(name, matrix)](const Reins& reins) {
+        in_background(progress, [scene, to = group_moves(moves)](const Reins& reins) {
             Result found{std::make_shared<Scene>(*scene), {}};
             move(*found.first, to, move_work(reins), &found.second);
             return found;
@@ -354,6 +355,14 @@ GroupMove group_move(const std::string& name, const py::object& to) {
     return result;
 }
 
+std::vector<GroupMove> group_moves(const py::dict& moves) {
+    std::vector<GroupMove> result;
+    for (const auto& [name, to] : moves)
+        result.push_back(
+            group_move(name.cast<std::string>(), py::reinterpret_borrow<py::object>(to)));
+    return result;
+}
+
 py::dict move_figures(const MoveReport& report) {
     py::dict result;
     result["receivers"] = report.num_moved;
@@ -417,6 +426,14 @@ void bind_scenes(py::module_& module) {
                              [parts, output](const Reins&) { return join(parts, output); });
     });
     module.def("load_scene", &load_prt);
+    module.def("save_mesh", [](const Path& path, const std::shared_ptr<Mesh>& mesh) {
+        const Release release;
+        return mesh::save(path, mesh->geometry);
+    });
+    module.def("save_mesh", [](const Path& path, const std::shared_ptr<Scene>& scene) {
+        const Release release;
+        return mesh::save(path, drawn_mesh(*scene));
+    });
     module.def("save_scene", [](const Path& path, const std::shared_ptr<Scene>& scene) {
         return in_background(py::none(),
                              [path, scene](const Reins&) { return save_scene(path, *scene); });

@@ -28,6 +28,8 @@ struct EnvironmentHandle {
 
 /// `to`: a matrix, 16 doubles, row by row; or "away" or "back".
 [[nodiscard]] GroupMove group_move(const std::string& name, const pybind11::object& to);
+/// The same of a dict: {name: to}.
+[[nodiscard]] std::vector<GroupMove> group_moves(const pybind11::dict& moves);
 [[nodiscard]] pybind11::dict move_figures(const MoveReport& report);
 
 void bind_scenes(pybind11::module_& module);

@@ -56,6 +56,8 @@ def numbers(name: str, value: ArrayLike, *shape: Optional[int]) -> NDArray[Any]:
 
     A copy: what is checked must not change before it is taken, whatever other threads write.
     """
+    if value is None:
+        raise TypeError(f"{name}: expected an array, got None")
     try:
         array = np.array(value)
     except ValueError:

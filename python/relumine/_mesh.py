@@ -167,20 +167,23 @@ class Mesh:
             "floor_scale": floor_scale,
         }
         with errors(path):
-            with readable(os.fspath(path)) as (file, notes):
+            with readable(os.fsdecode(path)) as (file, notes):
                 core = _core.load_mesh(file, options)
         warn([*notes, *core.warnings])
         return cls._of(core, _loaded, os.path.abspath(path), core.source_hash, **options)
 
     @classmethod
     def of(cls, mesh: Any, **options: Any) -> "Mesh":
-        """A mesh of trimesh, of Open3D, or of any object with `vertices` and `faces` or `triangles`.
+        """A mesh of trimesh, of Open3D, or of any object with `vertices` and `faces` or `triangles`;
+        or of a file, as load() reads it.
 
-        options  those of Mesh(), such as floor="auto"
+        options  those of Mesh(), or of load() for a file, such as floor="auto"
 
         Vertex colours are taken as a screen shows them. Normals are computed unless Open3D has
-        some. precompute() takes such objects as they are.
+        some. precompute() takes such objects, and names of files, as they are.
         """
+        if isinstance(mesh, (str, os.PathLike)):
+            return cls.load(mesh, **options)
         if isinstance(mesh, cls):
             if options:
                 raise ValueError(f"{next(iter(options))}: expected none beside a relumine.Mesh")
@@ -213,6 +216,17 @@ class Mesh:
 
     def __reduce__(self) -> Any:
         return _again, self._made
+
+    def save(self, path: Path) -> None:
+        """Writes the mesh: .glb (groups, uvs, materials and images of textures), .obj or .ply.
+
+        A warning names what the format does not hold. The file appears whole or not at all.
+
+        >>> relumine.Mesh.load("boulder.ply").save("boulder.glb")
+        """
+        with errors(path):
+            left_out = _core.save_mesh(os.fsdecode(path), self._core)
+        warn([f"{os.fsdecode(path)}: left out: {what}" for what in left_out])
 
     @property
     def notes(self) -> List[str]:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional, Union
+from typing import Mapping, NamedTuple, Optional, Union
 
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import doubles, expect, word
-from ._core import Mesh as CoreMesh
 from ._files import errors
 from ._mesh import Mesh
-from ._scene import Progress
+from ._scene import Moves, Progress, moves_of
 
 
 class Move(NamedTuple):
@@ -44,11 +43,17 @@ class Moving:
         raise NotImplementedError
 
     def move(
-        self, name: str, matrix: ArrayLike, *, progress: Optional[Progress] = None
+        self,
+        name: Union[str, Mapping[str, ArrayLike]],
+        matrix: Optional[ArrayLike] = None,
+        *,
+        progress: Optional[Progress] = None,
     ) -> Move:
         """Moves a group of the scene, as Scene.move(), and lights the scene again by its light.
 
-        name    a group of a scene that was precomputed with movable=True
+        name    a group of a scene that was precomputed with movable=True, or several at once, in
+                less time than one after the other: {name: matrix, ...} without `matrix`. They are
+                one step of undo_move()
         matrix  (4, 4): from its present place to the next one, for columns (x, y, z, 1), in the
                 coordinates of the mesh's file with Y up
 
@@ -57,20 +62,20 @@ class Moving:
 
         Raises ValueError as Scene.move(), RuntimeError where a blockers_function blocks the light.
         """
-        return self._move(name, doubles("matrix", matrix, 4, 4), progress)
+        return self._move(moves_of(name, matrix), progress)
 
     def pose(self, name: str, mesh: Mesh, *, progress: Optional[Progress] = None) -> Move:
         """Lets a group take another pose, as Scene.pose()."""
         expect("mesh", mesh, Mesh)
-        return self._move(name, mesh._core, progress)
+        return self._move({word("name", name): mesh._core}, progress)
 
     def remove(self, name: str, *, progress: Optional[Progress] = None) -> Move:
         """Takes a group away, as Scene.remove()."""
-        return self._move(name, "away", progress)
+        return self._move({word("name", name): "away"}, progress)
 
     def restore(self, name: str, *, progress: Optional[Progress] = None) -> Move:
         """Brings a group back that was taken away, to where it stood."""
-        return self._move(name, "back", progress)
+        return self._move({word("name", name): "back"}, progress)
 
     def drag(self, name: str, matrix: ArrayLike) -> Move:
         """Shows a group on its way, some ten times a second: `radiance` for the eye, until drop().
@@ -120,10 +125,8 @@ class Moving:
         with errors():
             return self._core.exchange_move(False)
 
-    def _move(
-        self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
-    ) -> Move:
+    def _move(self, moves: Moves, progress: Optional[Progress]) -> Move:
         with errors():
-            result = Move(**self._core.move(word("name", name), to, progress))
+            result = Move(**self._core.move(moves, progress))
         self._has_moved = True
         return result

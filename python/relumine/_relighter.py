@@ -113,7 +113,11 @@ class Frame(NamedTuple):
 
 
 def _environment(value: Environment) -> _core.Environment:
-    hint = ": relumine.Environment(array) makes one" if isinstance(value, np.ndarray) else ""
+    hint = ""
+    if isinstance(value, np.ndarray):
+        hint = ": relumine.Environment(array) makes one"
+    elif isinstance(value, (str, os.PathLike)):
+        hint = ": relumine.Environment.load() reads a file"
     expect("environment", value, Environment, hint)
     return value._core
 
@@ -150,7 +154,8 @@ class Relighter(Moving):
         surface_specular: Optional[Color] = None,
         surface_roughness: Optional[float] = None,
     ) -> None:
-        expect("scene", scene, Scene)
+        hint = ": relumine.precompute() makes one of a mesh, Scene.load() reads a .prt file"
+        expect("scene", scene, Scene, hint)
         if (surface_albedo, surface_specular, surface_roughness) != (None, None, None):
             scene = scene.recolored(
                 surface_albedo=surface_albedo,

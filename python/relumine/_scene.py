@@ -46,6 +46,24 @@ class Lambert(NamedTuple):
 
 Material = Union[Ggx, Blinn, Lambert, Brdf]
 
+#: What becomes of groups: a matrix, "away", "back", or a mesh that has the pose.
+Moves = Dict[str, Union[NDArray[Any], str, CoreMesh]]
+
+
+def moves_of(
+    name: Union[str, Mapping[str, ArrayLike]], matrix: Optional[ArrayLike]
+) -> Moves:
+    """The moves of one group, or of several by a mapping."""
+    if isinstance(name, Mapping):
+        if matrix is not None:
+            raise TypeError("matrix: expected none beside {name: matrix, ...}")
+        return {
+            word("name", each): doubles(f"matrix of {each}", to, 4, 4) for each, to in name.items()
+        }
+    if matrix is None:
+        raise TypeError("matrix: expected shape (4, 4), got None")
+    return {word("name", name): doubles("matrix", matrix, 4, 4)}
+
 
 def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Any]:
     """Materials as --material has them, or a group's name and its table."""
@@ -118,7 +136,7 @@ def precompute(
 ) -> "Scene":
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
-    mesh       a Mesh, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
+    mesh       a Mesh, the name of its file, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
                `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
@@ -331,7 +349,21 @@ class Scene:
     def save(self, path: Path) -> int:
         """Writes a .prt file, whole or not at all. Returns its size in bytes."""
         with errors(path):
+            extension = os.path.splitext(os.fsdecode(path))[1].lower()
+            if extension in (".glb", ".gltf", ".obj", ".ply", ".png", ".exr", ".hdr", ".npy"):
+                raise ValueError(
+                    f"path: expected a .prt file, got '{extension}': save_mesh() writes the mesh, "
+                    "Relighter.save() what is lit"
+                )
             return _core.save_scene(os.fspath(path), self._core)
+
+    def save_mesh(self, path: Path) -> None:
+        """Writes the scene's mesh as Mesh.save(): its vertices are the receivers, where these are
+        vertices. As a .glb it is what three.js draws (docs/web.md).
+        """
+        with errors(path):
+            left_out = _core.save_mesh(os.fsdecode(path), self._core)
+        warn([f"{os.fsdecode(path)}: left out: {what}" for what in left_out])
 
     @property
     def num_receivers(self) -> int:
@@ -411,11 +443,16 @@ class Scene:
         return self._core.groups
 
     def move(
-        self, name: str, matrix: ArrayLike, *, progress: Optional[Progress] = None
+        self,
+        name: Union[str, Mapping[str, ArrayLike]],
+        matrix: Optional[ArrayLike] = None,
+        *,
+        progress: Optional[Progress] = None,
     ) -> "Scene":
         """A scene in which a group of the mesh stands elsewhere, for the cost of what it changes.
 
-        name    a group of the mesh
+        name    a group of the mesh, or several at once, in less time than one after the other:
+                {name: matrix, ...} without `matrix`
         matrix  (4, 4): from its present place to the next one, for columns (x, y, z, 1), in the
                 coordinates of the mesh's file with Y up
 
@@ -434,7 +471,7 @@ class Scene:
         >>> scene.move("mesh", shifted)
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
-        return self._moved(name, doubles("matrix", matrix, 4, 4), progress)
+        return self._moved(moves_of(name, matrix), progress)
 
     def pose(self, name: str, mesh: Mesh, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene in which a group takes another pose, for the cost of a move.
@@ -453,7 +490,7 @@ class Scene:
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
         expect("mesh", mesh, Mesh)
-        return self._moved(name, mesh._core, progress)
+        return self._moved({word("name", name): mesh._core}, progress)
 
     def remove(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene from which a group is taken away, for the cost of a move. restore() undoes it.
@@ -466,11 +503,11 @@ class Scene:
         >>> scene.remove("mesh").restore("mesh")
         <relumine.Scene: vertices, ... receivers, ... clusters>
         """
-        return self._moved(name, "away", progress)
+        return self._moved({word("name", name): "away"}, progress)
 
     def restore(self, name: str, *, progress: Optional[Progress] = None) -> "Scene":
         """A scene in which a group that was removed stands again where it stood."""
-        return self._moved(name, "back", progress)
+        return self._moved({word("name", name): "back"}, progress)
 
     def fresh_clusters(self, *, progress: Optional[Progress] = None) -> int:
         """About how many clusters precompute() would choose for the scene as it stands.
@@ -484,11 +521,9 @@ class Scene:
         with errors():
             return _core.fresh_clusters(self._core, progress)
 
-    def _moved(
-        self, name: str, to: Union[NDArray[Any], str, CoreMesh], progress: Optional[Progress]
-    ) -> "Scene":
+    def _moved(self, moves: Moves, progress: Optional[Progress]) -> "Scene":
         with errors():
-            core, report = _core.moved(self._core, word("name", name), to, progress)
+            core, report = _core.moved(self._core, moves, progress)
         scene = Scene._of(core)
         scene.report = report
         return scene

@@ -64,7 +64,7 @@ GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to)
     : GroupDrag(scene, rays, to, dragged(scene, to)) {}
 
 GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::SceneChange first)
-    : scene_(scene), rays_(rays), group_(first.group),
+    : scene_(scene), rays_(rays), group_(first.groups.front()),
       group_of_blockers_(
           static_cast<std::uint32_t>(std::ranges::find(scene.blocking_mesh().groups, to.name) -
                                      scene.blocking_mesh().groups.begin())),
@@ -77,7 +77,6 @@ GroupDrag::GroupDrag(Scene& scene, SceneRays& rays, const GroupMove& to, prt::Sc
 
 /// Counts the receivers of other groups while this one is shrunk to a point, which blocks nothing.
 void GroupDrag::count_without() {
-    without_.group = group_;
     without_.difference = {.boxes = prt::boxes_around(mesh_), .receivers = receivers_};
     std::vector<glm::vec3>& positions = blocking_mesh(scene_).positions;
     for (const std::uint32_t vertex : vertices_)

@@ -102,10 +102,19 @@ prt::SceneChange change_of(const Scene& scene, const GroupMove& to) {
     return {};
 }
 
+prt::SceneChange change_of(const Scene& scene, std::span<const GroupMove> to) {
+    if (to.empty())
+        throw std::invalid_argument("expected groups to move, got none");
+    std::vector<prt::SceneChange> result;
+    for (const GroupMove& own : to)
+        result.push_back(change_of(scene, own));
+    return to.size() == 1 ? std::move(result.front()) : prt::joined(scene, std::move(result));
+}
+
 /// A move, step by step. The scene has its bounces of before until there are others.
 class Move {
 public:
-    Move(Scene& scene, const GroupMove& to, SceneRays& rays, const PrecomputeWork& work)
+    Move(Scene& scene, std::span<const GroupMove> to, SceneRays& rays, const PrecomputeWork& work)
         : scene_(scene), rays_(rays), work_(work), change_(change_of(scene, to)),
           has_bounces_(scene.bounces.has_value()) {}
 
@@ -142,7 +151,8 @@ private:
     /// Moves the group, or moves it back.
     void exchange() {
         prt::exchange(scene_, change_);
-        rays_.follow(change_.group);
+        for (const std::uint32_t group : change_.groups)
+            rays_.follow(group);
     }
 
     /// Finds what the bounces' rays met that are to be traced anew. Nothing where all are.
@@ -267,6 +277,11 @@ GroupMove pose_of(const std::string& name, const mesh::TriangleMesh& mesh) {
 }
 
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work,
+                      MoveReport* report, SceneRays* rays) {
+    return move(scene, std::span(&to, 1), work, report, rays);
+}
+
+prt::SceneChange move(Scene& scene, std::span<const GroupMove> to, const PrecomputeWork& work,
                       MoveReport* report, SceneRays* rays) {
     if (!has_clusters(scene))
         throw std::invalid_argument("expected a precomputed scene, got a mesh without clusters");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -104,6 +105,13 @@ struct MoveReport {
 ///          prt::moved(), prt::taken_away() and prt::brought_back(); Cancelled. Nothing has changed
 ///          then.
 prt::SceneChange move(Scene& scene, const GroupMove& to, const PrecomputeWork& work = {},
+                      MoveReport* report = nullptr, SceneRays* rays = nullptr);
+/// Moves several groups at once, each by Going::To or Going::Pose: what they change is found
+/// together, so it costs about as much as what they cover, and not a move for each. The counts are
+/// those of one move after the other.
+///
+/// Throws:  std::invalid_argument also for no group, and as prt::joined().
+prt::SceneChange move(Scene& scene, std::span<const GroupMove> to, const PrecomputeWork& work = {},
                       MoveReport* report = nullptr, SceneRays* rays = nullptr);
 
 /// Returns about how many clusters a precompute of a scene as it stands would choose: moves keep

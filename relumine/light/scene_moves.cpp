@@ -1,6 +1,7 @@
 #include "relumine/light/scene_moves.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -36,7 +37,7 @@ void SceneMoves::require_movable() const {
         throw std::logic_error("expected triangles that block light where groups move, got others");
 }
 
-MoveReport SceneMoves::move(const GroupMove& to, const PrecomputeWork& work) {
+MoveReport SceneMoves::move(std::span<const GroupMove> to, const PrecomputeWork& work) {
     constexpr std::size_t MostMoves = 32;
     require_movable();
     if (drag_)
@@ -96,7 +97,8 @@ bool SceneMoves::exchange(std::vector<prt::SceneChange>& from, std::vector<prt::
     if (from.empty())
         return false;
     prt::exchange(*own_, from.back());
-    rays_.follow(from.back().group);
+    for (const std::uint32_t group : from.back().groups)
+        rays_.follow(group);
     to.push_back(std::move(from.back()));
     from.pop_back();
     follower_.follow(to.back(), false);

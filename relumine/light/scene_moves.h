@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "prt/moves/scene_change.h"
@@ -30,7 +31,11 @@ public:
     ///          processes, or others than its triangles block light.
     /// Cost:    what the move changes. Lamps, bounces, and lists beside an environment are found
     ///          anew (docs/moves.md).
-    MoveReport move(const GroupMove& to, const PrecomputeWork& work = {});
+    MoveReport move(const GroupMove& to, const PrecomputeWork& work = {}) {
+        return move(std::span(&to, 1), work);
+    }
+    /// Moves several groups at once, as relumine::move(): one step of undo().
+    MoveReport move(std::span<const GroupMove> to, const PrecomputeWork& work = {});
 
     /// Drags a group: `to` leads from where it stood when the drag began. Quicker than move(), and
     /// for the eye: clusters with little light are sampled in their middle alone, and bounced light

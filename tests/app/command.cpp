@@ -56,7 +56,12 @@ std::string joined(const std::vector<std::string>& words) {
 /// Between fork and exec, so with nothing but system calls.
 void become_program(const char* folder, const char* out, const char* err, const RunOptions& options,
                     char* const* arguments) {
-    const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    int pipe_fds[2];
+    if (options.is_unread && ::pipe2(pipe_fds, O_CLOEXEC) == 0) {
+        ::close(pipe_fds[0]);
+        out_fd = pipe_fds[1];
+    }
     const int err_fd = ::open(err, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const int in_fd = ::open(options.stdin_path.c_str(), O_RDONLY | O_CLOEXEC);
     ::dup2(in_fd, STDIN_FILENO);
@@ -65,7 +70,7 @@ void become_program(const char* folder, const char* out, const char* err, const 
     if (::chdir(folder) != 0)
         ::_exit(126);
     // A shell that started the tests in the background may have some ignored.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ})
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ, SIGPIPE})
         ::signal(signal, SIG_DFL);
     if (options.ignored_signal != 0)
         ::signal(options.ignored_signal, SIG_IGN);

@@ -57,6 +57,8 @@ struct RunOptions {
     std::optional<std::uint64_t> max_file_bytes = {};
     /// Where stdout goes instead of Result::out
     std::string stdout_path = {};
+    /// Nobody reads stdout, as behind `| true`
+    bool is_unread = false;
     /// Where stdin comes from
     std::string stdin_path = "/dev/null";
     /// `ulimit -v` and `ulimit -s`

@@ -207,10 +207,39 @@ TEST_F(Info, Scene) {
     EXPECT_EQ(info["floor"], 4);
     EXPECT_EQ(info["source"], "mesh.obj");
     EXPECT_FALSE(info.contains("epsilon"));
+    EXPECT_EQ(info["bounces"], true);
+    EXPECT_EQ(info["groups"], nlohmann::json::array());
     prt::Scene scene = prt::load_scene(folder() / "scene.prt");
     scene.settings.epsilon = 0.5f; // the paper's form, of the library
     prt::save_scene(folder() / "scene.prt", scene);
     EXPECT_EQ(succeed("info scene.prt --json").json()["epsilon"], 0.5);
+}
+
+TEST_F(Info, BouncesAndGroupsOfAScene) {
+    std::string two = octahedron_obj();
+    two.insert(two.find("f "), "g near\n");
+    write("two.obj", two + "v 3 0 0\nv 4 0 0\nv 3 1 0\ng far\nf 7 8 9\n");
+    succeed("precompute two.obj -o scene.prt --tolerance 0.5 --refine off --movable --floor 4");
+    nlohmann::json info = succeed("info scene.prt --json").json();
+    EXPECT_EQ(info["bounces"], true);
+    EXPECT_EQ(info["groups"], (nlohmann::json{"near", "far", "floor"}));
+    EXPECT_EQ(info["have_moved"], false);
+    std::string out = succeed("info scene.prt").out;
+    EXPECT_NE(out.find("groups              3 that can move: near, far, floor\n"),
+              std::string::npos)
+        << out;
+    EXPECT_NE(out.find("bounces             within "), std::string::npos) << out;
+    succeed("move scene.prt far=1,0,0 -o scene.prt");
+    succeed("move scene.prt near=away -o scene.prt");
+    info = succeed("info scene.prt --json").json();
+    EXPECT_EQ(info["have_moved"], true);
+    EXPECT_EQ(info["taken_away"], (nlohmann::json{"near"}));
+    out = succeed("info scene.prt").out;
+    EXPECT_NE(out.find("near, far, floor; some have moved\n"), std::string::npos) << out;
+    EXPECT_NE(out.find("taken away          near\n"), std::string::npos) << out;
+    succeed("precompute mesh.obj -o scene.prt --tolerance 0.5 --refine off");
+    EXPECT_NE(succeed("info scene.prt").out.find("\nbounces             none\n"), std::string::npos)
+        << "no surface sees another";
 }
 
 TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {

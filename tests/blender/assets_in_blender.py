@@ -203,6 +203,45 @@ def test_light_follows_an_object_that_moves():
         assert "place changed (expected a matrix that turns and moves" in states()["roof"]
 
 
+def test_light_follows_all_that_moved_in_one_go():
+    scene = clear()
+    floor, roofs = plane("ground", size=4.0, cuts=15), []
+    for i in range(3):
+        roofs.append(plane(f"lid {i}", size=0.6, location=(i - 1.0, 0, 0.4)))
+    assert precompute(floor, *roofs) == {"FINISHED"}
+    first, live = colors(floor), assets.live_scene(assets.path_of(floor))
+    calls, move = [], live.world.move
+    live.world.move = lambda ways, **how: (calls.append(len(ways)), move(ways, **how))
+    for roof in roofs:
+        roof.location.y = 0.8
+    update()
+    # Beside the user's work: the light stays until it is there, and is not called stale.
+    assets.relight(scene, wait=False)
+    assert str(assets.followings()[0]).startswith("Light follows lid 0, lid 1, lid 2: ")
+    stale = states()
+    assert stale == {} and (colors(floor) == first).all(), stale
+    assets.followings()[0]._thread.join()
+    assets.relight(scene, wait=False)
+    assert calls == [3] and not assets.followings() and states() == {}
+    moved = colors(floor)
+    assert abs(moved - first).max() > 0.1
+    assert assets.followed(floor).startswith("Light followed lid 0, lid 1, lid 2 in ")
+    # One that cannot follow does not keep the others.
+    for roof in roofs:
+        roof.location.y = 0.0
+    roofs[1].scale.x = -1.0
+    update()
+    told = []
+    assets.relight(scene, wait=True, progress=told.append)
+    assert told and max(told) <= 1.0
+    assert set(states()) == {"lid 1", "ground", "lid 0", "lid 2"}
+    assert "mirrors" in states()["lid 1"] and abs(colors(floor) - moved).max() > 0.1
+    roofs[1].scale.x = 1.0
+    update()
+    assets.relight(scene, wait=True)
+    assert states() == {} and abs(colors(floor) - first).max() < 1e-4
+
+
 def test_what_renders_blocks_light():
     clear()
     floor = plane("floor")

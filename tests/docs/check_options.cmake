@@ -30,7 +30,7 @@ endif()
 
 list(TRANSFORM commands REPLACE "^env$" "env convert")
 list(TRANSFORM commands REPLACE "^mesh$" "mesh repair;mesh refine;mesh simplify")
-list(TRANSFORM commands REPLACE "^export$" "export runtime;export web")
+list(TRANSFORM commands REPLACE "^export$" "export runtime;export three;export web")
 foreach(command IN LISTS commands)
     if(NOT page MATCHES "\n## ${command}[ \n]")
         message("${PAGE}: no section for ${command}")

@@ -2,6 +2,8 @@
 
 #include <cstring>
 #include <limits>
+#include <span>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include "files/output_file.h"
 #include "tests/mesh/lit_ply.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/mesh/texture_files.h"
 
 namespace relumine::mesh {
 namespace {
@@ -188,9 +191,10 @@ TEST_F(SaveTest, AMeshAsItIsLoadsAgainFromGlb) {
     mesh.triangle_groups.assign(mesh.num_triangles(), 0);
     mesh.groups = {"box"};
     mesh.uvs.assign(mesh.num_vertices(), glm::vec2(0.5f));
-    EXPECT_EQ(save(folder_ / "box.glb", mesh).size(), 2u) << "uvs, groups";
+    EXPECT_TRUE(save(folder_ / "box.glb", mesh).empty());
     const TriangleMesh parts = load(folder_ / "box.glb");
     ASSERT_EQ(parts.num_triangles(), mesh.num_triangles());
+    EXPECT_EQ(parts.groups, mesh.groups);
     std::size_t num_metal = 0;
     for (std::size_t i = 0; i < parts.num_triangles(); ++i) {
         const Material& material = parts.materials[parts.triangle_materials[i]];
@@ -205,6 +209,122 @@ TEST_F(SaveTest, AMeshAsItIsLoadsAgainFromGlb) {
     EXPECT_EQ(num_metal, (mesh.num_triangles() + 2) / 3);
     EXPECT_THROW(save(folder_ / "none.glb", TriangleMesh()), std::runtime_error);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "none.glb"));
+}
+
+/// A texture of bytes that need not be decoded here.
+Texture texture_of(const std::string& file, VOrigin origin) {
+    ImageBudget budget;
+    return decode_texture(std::as_bytes(std::span(file)), origin, budget);
+}
+
+TEST_F(SaveTest, GlbKeepsTexturesAndBothUvs) {
+    TriangleMesh mesh = box_;
+    mesh.textures = {texture_of(four_colors(), VOrigin::Top),
+                     texture_of(png(1, 1, {Red}), VOrigin::Top)};
+    const TextureSlot plain{.texture = 0, .is_srgb = true, .wrap = {Wrap::Clamp, Wrap::Mirror}};
+    TextureSlot turned{.texture = 1, .uv_set = 1, .uv_offset = {0.25f, -0.5f}};
+    turned.uv_from_mesh_uv = glm::mat2(0.0f, -2.0f, 0.5f, 0.0f); // a quarter turn
+    TextureSlot mirrored{.texture = 0, .is_srgb = true, .uv_set = 1};
+    mirrored.uv_from_mesh_uv = glm::mat2(-1.0f, 0.0f, 0.0f, 3.0f);
+    mesh.materials = {{.name = "all",
+                       .model = MaterialModel::MetallicRoughness,
+                       .times_vertex_color = true,
+                       .base_color_texture = plain,
+                       .metallic_roughness_texture = turned,
+                       .emission = {0.5f, 0.25f, 1.0f},
+                       .emission_texture = mirrored,
+                       .alpha_mode = AlphaMode::Mask,
+                       .alpha = 0.75f,
+                       .alpha_cutoff = 0.25f,
+                       .normal_texture = turned,
+                       .normal_scale = 0.5f,
+                       .coat = 0.5f,
+                       .coat_roughness_texture = turned}};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        mesh.uvs.emplace_back(0.125f * static_cast<float>(i), 1.5f);
+        mesh.second_uvs.emplace_back(0.5f, -0.25f * static_cast<float>(i));
+    }
+    EXPECT_TRUE(save(folder_ / "box.glb", mesh).empty());
+    const TriangleMesh loaded = load(folder_ / "box.glb");
+    EXPECT_EQ(loaded.uvs, mesh.uvs);
+    EXPECT_EQ(loaded.second_uvs, mesh.second_uvs);
+    ASSERT_EQ(loaded.textures.size(), 2u) << "each image once";
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(loaded.textures[i].texels, mesh.textures[i].texels);
+    const Material &own = loaded.materials.at(0), &expected = mesh.materials[0];
+    EXPECT_EQ(own.base_color_texture, expected.base_color_texture);
+    for (const auto slot : {&Material::metallic_roughness_texture, &Material::emission_texture,
+                            &Material::normal_texture, &Material::coat_roughness_texture}) {
+        ASSERT_TRUE(own.*slot);
+        for (const glm::vec2& uv : {glm::vec2(0.25f, 0.5f), glm::vec2(1.0f, 0.0f)}) {
+            const auto place = [&](const TextureSlot& by) {
+                return by.uv_from_mesh_uv * uv + by.uv_offset;
+            };
+            EXPECT_LT(glm::distance(place(*(own.*slot)), place(*(expected.*slot))), 1e-6f);
+        }
+        EXPECT_EQ((own.*slot)->uv_set, (expected.*slot)->uv_set);
+        EXPECT_EQ((own.*slot)->texture, (expected.*slot)->texture);
+    }
+    EXPECT_EQ(own.alpha_mode, AlphaMode::Mask);
+    EXPECT_EQ(own.alpha, 0.75f);
+    EXPECT_EQ(own.alpha_cutoff, 0.25f);
+    EXPECT_EQ(own.normal_scale, 0.5f);
+}
+
+/// Two groups of two materials, whose uvs count from below and have a seam.
+TEST_F(SaveTest, AnObjBecomesAGlbThatLooksTheSame) {
+    static_cast<void>(write("four.png", four_colors()));
+    static_cast<void>(write("a.mtl", "newmtl paint\n"
+                                     "map_Kd -s 2 0.5 1 -o 0.125 0.25 0 four.png\n"
+                                     "newmtl plain\n"));
+    const auto file =
+        write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                       "vt 0.1 0.2\nvt 0.4 0.2\nvt 0.4 0.9\nvt 0.1 0.9\nvt 0.7 0.7\n"
+                       "g one\nusemtl paint\nf 1/1 2/2 3/3\nusemtl plain\nf 1/5 3/3 4/4\n"
+                       "g two\nusemtl paint\nf 4/4 3/5 2/1\n");
+    const TriangleMesh mesh = load(file);
+    ASSERT_FALSE(mesh.corner_uvs.empty());
+    EXPECT_TRUE(save(folder_ / "a.glb", mesh).empty());
+    const TriangleMesh loaded = load(folder_ / "a.glb");
+    EXPECT_EQ(loaded.groups, mesh.groups);
+    EXPECT_EQ(loaded.num_vertices(), 5u + 3u) << "of the first group one has two uvs";
+    ASSERT_EQ(loaded.num_triangles(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(loaded.triangle_groups[i], mesh.triangle_groups[i]);
+        const Material &own = loaded.materials[loaded.triangle_materials[i]],
+                       &expected = mesh.materials[mesh.triangle_materials[i]];
+        EXPECT_EQ(own.name, expected.name);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = loaded.triangles[i][k];
+            EXPECT_EQ(loaded.positions[vertex], mesh.positions[mesh.triangles[i][k]]);
+            if (expected.base_color_texture) {
+                const glm::vec3 color =
+                    sample(loaded.textures[0], *own.base_color_texture, loaded.uvs[vertex]);
+                EXPECT_LT(
+                    glm::distance(color, sample(mesh.textures[0], *expected.base_color_texture,
+                                                mesh.corner_uvs[i][k])),
+                    1e-4f);
+            }
+        }
+    }
+}
+
+TEST_F(SaveTest, SaysWhichImagesAGlbCannotHave) {
+    TriangleMesh mesh = box_;
+    Texture made{.name = "made", .width = 1, .height = 1, .texels = {Red}};
+    mesh.textures = {made, texture_of(png(1, 1, {Red}), VOrigin::Bottom)};
+    mesh.textures[1].name = "rough.png";
+    mesh.materials = {
+        {.name = "a", .base_color_texture = TextureSlot{.texture = 0}},
+        {.name = "b", .roughness_texture = TextureSlot{.texture = 1}},
+        {.name = "c", .alpha_mode = AlphaMode::Mask, .alpha_texture = TextureSlot{.texture = 1}}};
+    mesh.triangle_materials.assign(mesh.num_triangles(), 0);
+    mesh.uvs.assign(mesh.num_vertices(), glm::vec2(0.5f));
+    EXPECT_THAT(save(folder_ / "box.glb", mesh),
+                testing::ElementsAre("the image made, which is no PNG, JPEG or WebP",
+                                     "images of roughness or metal alone of the material b",
+                                     "an image of alpha alone of the material c"));
 }
 
 TEST_F(SaveTest, GlbKeepsLayersAndGlassAndPrimitivesShareVertices) {

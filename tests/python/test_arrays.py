@@ -1,5 +1,7 @@
 """Arrays of every kind, in and out."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -173,8 +175,43 @@ def test_meshes_of_other_libraries_are_taken():
         assert scene.num_receivers == 4
     assert relumine.Mesh.of(OfOpen3d(), floor=5).floor == 5
     assert relumine.Mesh.of(mesh) is mesh
-    with pytest.raises(TypeError, match="mesh: expected a relumine.Mesh, got str; Mesh.load"):
-        relumine.precompute("mesh.ply")
+    with pytest.raises(TypeError, match="mesh: expected a relumine.Mesh, got int; Mesh.load"):
+        relumine.precompute(7)
+
+
+def test_names_of_files_are_taken_as_meshes(tmp_path):
+    mesh = relumine.Mesh(*tetrahedron())
+    mesh.save(tmp_path / "a.glb")
+    scene = relumine.precompute(tmp_path / "a.glb", tolerance=0.1, refine=False)
+    assert scene.num_receivers == 4
+    assert relumine.Mesh.of(str(tmp_path / "a.glb"), floor=5).floor == 5
+    assert len(relumine.Mesh.load(os.fsencode(tmp_path / "a.glb")).vertices) == 4
+    with pytest.raises(FileNotFoundError, match="nope.glb"):
+        relumine.precompute("nope.glb")
+    with pytest.raises(TypeError, match="vertices: expected an array, got None"):
+        relumine.Mesh(None, tetrahedron()[1])
+    with pytest.raises(TypeError, match=r"got Mesh: relumine.precompute\(\) makes one"):
+        relumine.Relighter(mesh)
+    with pytest.raises(TypeError, match=r"got str: relumine.Environment.load\(\) reads a file"):
+        relumine.Relighter(scene).set_environment("sky.exr")
+
+
+def test_meshes_are_saved(tmp_path):
+    vertices, triangles = tetrahedron()
+    mesh = relumine.Mesh(vertices, triangles, uvs=np.zeros((4, 2)), groups=["a", "a", "b", "b"])
+    mesh.save(tmp_path / "a.glb")
+    again = relumine.Mesh.load(tmp_path / "a.glb")
+    assert again.groups == ["a", "b"] and len(again.triangles) == 4
+    with pytest.warns(relumine.RelumineWarning, match="a.ply: left out: groups"):
+        mesh.save(tmp_path / "a.ply")
+    with pytest.raises(OSError, match="expected a mesh file to write"):
+        mesh.save(tmp_path / "a.stl")
+    scene = relumine.precompute(mesh, tolerance=0.1, refine=False, movable=True)
+    scene.save_mesh(tmp_path / "b.glb")
+    assert relumine.Mesh.load(tmp_path / "b.glb").groups == ["a", "b"]
+    with pytest.raises(ValueError, match=r"path: expected a .prt file, got '.glb': save_mesh\(\)"):
+        scene.save(tmp_path / "c.glb")
+    assert not (tmp_path / "c.glb").exists()
 
 
 def test_triangles_alone_are_refused():

@@ -227,6 +227,32 @@ def test_the_light_of_a_relighter_follows(movable, sky):
     assert not relighter.redo_move()
 
 
+def test_several_groups_move_at_once(movable, sky):
+    relighter = lit_by(sky, movable)
+    before = relighter.radiance.copy()
+    ways = {"ball": shift(0.5, 0.25, 0.0), "plate": shift(-0.2, 0.0, 0.1)}
+    together = movable.move(ways)
+    in_turn = movable
+    for name, way in ways.items():
+        in_turn = in_turn.move(name, way)
+    assert (together.vertices == in_turn.vertices).all()
+    assert (lit_by(sky, together).radiance == lit_by(sky, in_turn).radiance).all()
+    assert relighter.move(ways).receivers == len(movable.vertices)
+    assert (relighter.radiance == lit_by(sky, together).radiance).all()
+    assert relighter.undo_move() and (relighter.radiance == before).all()
+    assert not relighter.undo_move()
+    with pytest.raises(ValueError, match=r"matrix of ball: expected shape \(4, 4\)"):
+        relighter.move({"ball": np.eye(3)})
+    with pytest.raises(ValueError, match="expected groups to move, got none"):
+        movable.move({})
+    with pytest.raises(TypeError, match="matrix: expected none beside"):
+        movable.move(ways, np.eye(4))
+    with pytest.raises(TypeError, match=r"matrix: expected shape \(4, 4\), got None"):
+        movable.move("ball")
+    with pytest.raises(ValueError, match="did you mean ball"):
+        relighter.move({"bal": np.eye(4)})
+
+
 def test_a_drag_shows_the_group_and_a_drop_moves_it(movable, sky):
     relighter = lit_by(sky, movable)
     before = relighter.radiance.copy()

@@ -1,6 +1,8 @@
 """From arrays to radiance and pictures, held to closed forms and to the command line."""
 
 import inspect
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -342,3 +344,24 @@ def test_places_of_texels(arrays):
     assert scene.positions[:, 0] == pytest.approx((column + 0.5) / 16 * 6 - 3, abs=1e-3)
     assert scene.positions[:, 2] == pytest.approx(3 - (row + 0.5) / 16 * 6, abs=1e-3)
     assert relumine.precompute(mesh, tolerance=0.1, refine=False).places.shape == (0,)
+
+
+def test_a_picture_is_denoised(monkeypatch):
+    given = []
+
+    def denoise(color, albedo, normal, hdr):
+        given.append((color.shape, albedo, normal, hdr))
+        return 0.5 * color
+
+    monkeypatch.setitem(sys.modules, "pyoidn", types.SimpleNamespace(denoise=denoise))
+    picture = relumine.Picture(np.full((4, 6, 4), 0.5), exposure=1.5, tone_map="agx")
+    smooth = picture.denoised(albedo=np.ones((4, 6, 3)))
+    assert given[0][0] == (4, 6, 3) and given[0][1].dtype == np.float32 and given[0][3]
+    assert given[0][2] is None
+    assert (smooth[..., :3] == 0.25).all() and (smooth[..., 3] == 0.5).all()
+    assert (smooth.exposure, smooth.tone_map) == (1.5, "agx")
+    with pytest.raises(ValueError, match=r"normals: expected shape \(4, 6, 3\)"):
+        picture.denoised(normals=np.ones((6, 4, 3)))
+    monkeypatch.setitem(sys.modules, "pyoidn", None)
+    with pytest.raises(ImportError, match=r"pip install relumine\[denoise\]"):
+        picture.denoised()

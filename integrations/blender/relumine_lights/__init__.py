@@ -8,6 +8,7 @@ Axes: Blender's (x, y, z) is Relumine's (x, z, -y). Units: Cycles' own; the attr
 radiance for albedo 1.
 
 assets.py      objects and their scene files: what the rest is for
+following.py   light that follows objects
 worlds.py      what the world's nodes say; bake.py and bake_worker.py render those that say more
 lamps.py       suns, and lamps near the scene
 geometry.py    meshes, what stands around them, keys
@@ -63,7 +64,7 @@ def on_change(scene, depsgraph=None):
     if any(isinstance(update.id, (bpy.types.Object, bpy.types.Collection)) for update in updates):
         _later(_look, REST)
     if depsgraph is None or assets.is_waiting(scene) or any(map(is_light, updates)):
-        assets.relight_quietly(scene, depsgraph)
+        _relight(scene, depsgraph)
         if baker.is_busy:
             _later(_take_bake, 0.05)
 
@@ -71,7 +72,7 @@ def on_change(scene, depsgraph=None):
 @persistent
 def on_frame(scene, depsgraph=None):
     """A picture that renders must be right: bakes are waited for."""
-    assets.relight_quietly(scene, depsgraph, wait=bpy.app.background or _renders)
+    _relight(scene, depsgraph, wait=bpy.app.background or _renders)
 
 
 _renders = False
@@ -107,8 +108,14 @@ def _later(call, seconds):
     bpy.app.timers.register(call, first_interval=seconds)
 
 
+def _relight(scene, depsgraph=None, **how):
+    assets.relight_quietly(scene, depsgraph, **how)
+    if assets.followings():
+        _later(_take_moves, 0.1)
+
+
 def _look():
-    assets.relight_quietly(bpy.context.scene)  # what has moved
+    _relight(bpy.context.scene)  # what has moved
     assets.untie_copies(bpy.context.scene)
     assets.look_for_changes(bpy.context.scene)
     _redraw()
@@ -122,9 +129,23 @@ def _take_bake():
             bpy.context.scene.relumine.error = str(error)
     if baker.is_busy:
         return 0.05
-    assets.relight_quietly(bpy.context.scene)
+    _relight(bpy.context.scene)
     _redraw()
     return 0.05 if baker.is_busy else None
+
+
+def _take_moves():
+    """Tells how far the light has followed, and takes it once it is there."""
+    on_their_way = assets.followings()
+    text = "; ".join(f"Relumine: {each}" for each in on_their_way)
+    if not any(each.is_busy for each in on_their_way):
+        assets.relight_quietly(bpy.context.scene)
+        assets.look_for_changes(bpy.context.scene)
+        text = None
+    for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(text)
+    _redraw()
+    return 0.1 if assets.followings() else None
 
 
 def _redraw():
@@ -137,7 +158,7 @@ def _redraw():
 def on_undo(scene, depsgraph=None):
     """Undo brings back an older attribute: it is written again."""
     shape_changed()
-    assets.relight_quietly(bpy.context.scene, force=True)
+    _relight(bpy.context.scene, force=True)
     _later(_look, REST)
 
 
@@ -172,7 +193,7 @@ def register():
 def unregister():
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
-    for call in (_look, _take_bake):
+    for call in (_look, _take_bake, _take_moves):
         if bpy.app.timers.is_registered(call):
             bpy.app.timers.unregister(call)
     del bpy.types.Scene.relumine, bpy.types.Object.relumine

@@ -11,6 +11,7 @@ import numpy as np
 import relumine
 
 from . import geometry, lamps
+from .following import Following, Way, listed
 from .materials import ATTRIBUTE, LIGHTMAP, base_colors, write_colors, write_lightmap
 from .worlds import WorldLight, forget, stamp
 
@@ -45,6 +46,7 @@ class LiveScene:
         # Where objects stand in memory that do not stand where the file has them, and the places
         # that were refused: {first vertex: matrix}, {first vertex: (matrix, error)}.
         self._places, self._refused = {}, {}
+        self.following, self.followed = None, ""
         self._is_stale = False  # the radiance is not that of its parts
         self.radiance = np.zeros((self.scene.num_receivers, 3), dtype=np.float32)
 
@@ -56,35 +58,59 @@ class LiveScene:
             self._digests[first, count] = geometry.digest(own)
         return self._digests[first, count] == wanted
 
-    def follow(self, things):
-        """Moves what stands elsewhere than in memory, in memory alone. Returns whether it did."""
-        moved = False
+    def follow(self, things, wait, progress=None):
+        """Lets the light follow what stands elsewhere than in memory, in memory alone: now, or
+        beside the user's work, until it is called again."""
+        if self.following is not None and (wait or not self.following.is_busy):
+            self._take()
+        if self.following is not None:
+            return
+        ways = self._ways(things)
+        if ways:
+            self.following = Following(self.world, ways)
+            if not wait:
+                self.following.start()
+                return
+            self._take(progress)
+
+    def _ways(self, things):
+        result = {}
         for thing in things:
             if thing[TEXELS] or MATRIX not in thing or str(thing[FIRST]) not in self.scene.groups:
                 continue
             first, to = thing[FIRST], np.array(thing.matrix_world, dtype=np.float64)
             at = self._places.get(first, np.array(thing[MATRIX]).reshape(4, 4))
-            if geometry.same_place(at, to):
-                continue
-            if first in self._refused and geometry.same_place(self._refused[first][0], to):
+            if geometry.same_place(at, to) or self.refusal(thing):
                 continue
             try:
-                matrix = geometry.way(at, to)
-                self.world.move(str(first), matrix)
-                if self.suns is not None:
-                    self.suns.move(str(first), matrix)
-            except (ValueError, np.linalg.LinAlgError) as error:
+                result[first] = Way(thing.name, geometry.way(at, to), to)
+            except np.linalg.LinAlgError as error:
                 self._refused[first] = to, str(error)
-                continue
+        return result
+
+    def _take(self, progress=None):
+        """Takes what has followed, when it is there."""
+        followed, self.following = self.following, None
+        followed.finish(progress)
+        for first in followed.places:
             self._refused.pop(first, None)
-            self._places[first], moved = to, True
-        if moved:
-            for name, relighter in (("world", self.world), ("suns", self.suns)):
-                if name in self.parts and np.ndim(self.parts[name]):
-                    self.parts[name] = relighter.radiance
-            self.keys.pop("lamps", None)
+        self._refused.update(followed.refused)
+        self._places.update(followed.places)
+        if followed.places:
+            if np.ndim(self.parts.get("world", 0.0)):
+                self.parts["world"] = self.world.radiance
+            self.suns = None  # made anew of the scene as it stands
+            for part in ("suns", "lamps"):
+                self.keys.pop(part, None)
             self._is_stale = True
-        return moved
+            names = listed(sorted(followed.names))
+            self.followed = f"Light followed {names} in {followed.seconds:.1f} s"
+        if followed.error is not None:
+            raise followed.error
+
+    def close(self):
+        if self.following is not None:
+            self.following.cancel()
 
     def refusal(self, thing):
         """Why it could not follow an object to where that is, or None."""
@@ -93,13 +119,20 @@ class LiveScene:
             return None
         return refused[1]
 
+    def follows(self, thing):
+        """Whether the light is on its way to an object."""
+        return self.following is not None and thing.name in self.following.names
+
     def stands(self, thing):
         """Whether the light is that of where an object stands."""
         at = self._places.get(thing[FIRST])
         return at is not None and geometry.same_place(at, thing.matrix_world)
 
     def light(self, world, lit_by, face_resolution, wait):
-        """Returns whether the radiance changed. Lamps stay where a bake is under way."""
+        """Returns whether the radiance changed. Lamps stay where a bake is under way, and all light
+        does while it follows objects."""
+        if self.following is not None:
+            return False
         suns = [lamp for lamp in lit_by if lamp.type == "SUN"]
         near = [lamp for lamp in lit_by if lamp.type != "SUN"]
         turn = np.array(world.turn).tobytes()
@@ -160,6 +193,8 @@ states, remarks = {}, []
 
 
 def forget_all():
+    for live in _live.values():
+        live.close()
     for each in (_live, _nearest, _fill, _waiting, states, remarks):
         each.clear()
     geometry.shape_changed()
@@ -218,12 +253,26 @@ def untie_copies(scene):
 def live_scene(path):
     live = _live.get(path)
     if live is None or live.stamp != stamp(path):
+        if live is not None:
+            live.close()
         live = _live[path] = LiveScene(path)
     return live
 
 
-def relight(scene, depsgraph=None, *, force=False, wait=False):
-    """Brings all objects of the scene up to date. Returns how many changed."""
+def followings():
+    """What the light follows at present."""
+    return [live.following for live in _live.values() if live.following is not None]
+
+
+def followed(thing):
+    """What the light of an object's asset followed last, in words; empty where it follows now."""
+    live = _live.get(path_of(thing))
+    return live.followed if live is not None and live.following is None else ""
+
+
+def relight(scene, depsgraph=None, *, force=False, wait=False, progress=None):
+    """Brings all objects of the scene up to date. Returns how many changed. Bakes and moves of
+    objects are waited for, or are taken by a later call; `progress` is told of such moves."""
     things = lit_objects(scene)
     if not things:
         return 0
@@ -237,7 +286,7 @@ def relight(scene, depsgraph=None, *, force=False, wait=False):
                 changed[path] = False
                 if not os.path.exists(path):
                     raise FileNotFoundError(f"{path}: cannot read: no such file")
-                live_scene(path).follow(partners(scene, thing))
+                live_scene(path).follow(partners(scene, thing), wait, progress)
                 changed[path] = live_scene(path).light(
                     world, lit_by, scene.relumine.face_resolution, wait
                 )
@@ -287,8 +336,8 @@ def write(thing, live, depsgraph):
 
 
 def relight_quietly(scene, depsgraph=None, force=False, wait=None):
-    """For handlers, which must not raise: an error is shown in the panel. Where nobody looks, a
-    bake is waited for."""
+    """For handlers, which must not raise: an error is shown in the panel. Where nobody looks,
+    bakes and moves are waited for."""
     global _at_work
     if _at_work or not scene.relumine.live:
         return
@@ -342,6 +391,8 @@ def look_for_changes(scene, depsgraph=None):
             ("what is around", thing[AROUND], around[path])) if old != new]  # fmt: skip
         if geometry.is_shared(thing):
             states[thing.name] = "shares its mesh with another object"
+        elif changed == ["place"] and live is not None and live.follows(thing):
+            continue
         elif changed:
             states[thing.name] = f"stale: {', '.join(changed)} changed"
             if live is not None and live.refusal(thing):
@@ -479,7 +530,8 @@ class Precompute:
             thing.relumine.file = self.path
         _nearest.clear()
         _fill.clear()
-        _live.pop(self.absolute, None)
+        if self.absolute in _live:
+            _live.pop(self.absolute).close()
         self.scene.relumine.error = ""
         relight_quietly(self.scene, force=True)
         look_for_changes(self.scene)

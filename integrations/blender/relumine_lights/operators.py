@@ -189,12 +189,18 @@ class RELUMINE_OT_update(Button):
         assets.untie_copies(context.scene)
         settings = context.scene.relumine
         settings.error = ""
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
         try:
-            count = assets.relight(context.scene, force=True, wait=True)
+            count = assets.relight(
+                context.scene, force=True, wait=True,
+                progress=lambda fraction: manager.progress_update(100 * fraction),
+            )  # fmt: skip
         except ERRORS as error:
             settings.error = str(error)
             raise
         finally:
+            manager.progress_end()
             assets.look_for_changes(context.scene)
         if not assets.lit_objects(context.scene):
             self.doubts.append("precompute first: no object has a transfer")

@@ -83,6 +83,10 @@ class RELUMINE_PT_panel(bpy.types.Panel):
             layout.label(text=thing[PATH], icon="FILE")
             for note in assets.notes_of(thing):
                 said(layout, context, note, "INFO")
+            if assets.followed(thing):
+                said(layout, context, assets.followed(thing), "CHECKMARK")
+        for following in assets.followings():
+            said(layout, context, str(following), "TIME")
         for name, state in sorted(assets.states.items()):
             said(layout, context, f"{name} {state}", "ERROR")
         state = assets.states.get(thing.name, "") if thing is not None else ""

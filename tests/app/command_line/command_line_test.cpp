@@ -141,6 +141,18 @@ TEST_F(CommandLineTest, OutputThatCannotBePrintedIsAFailure) {
         fail(with({"info", "scene.prt"}, more), {"standard output"}, {.stdout_path = "/dev/full"});
 }
 
+TEST_F(CommandLineTest, APipeThatNobodyReadsIsNoFailure) {
+    precompute();
+    for (const Words& words :
+         {Words("info scene.prt"), Words("info scene.prt --json"), Words("--help"),
+          Words("completion"), Words("relight scene.prt env.hdr -o unread.npy")}) {
+        const Result result = relumine(words, {.is_unread = true});
+        EXPECT_EQ(result.exit_code, 0) << result.described();
+        EXPECT_EQ(result.err, "") << words.back();
+    }
+    EXPECT_TRUE(fs::exists(folder() / "unread.npy"));
+}
+
 TEST_F(CommandLineTest, OddFileNamesWork) {
     precompute();
     for (const std::string name :

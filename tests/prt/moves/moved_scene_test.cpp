@@ -95,7 +95,7 @@ template<typename Follow>
 SceneChange make(Scene& scene, SceneChange change, const Follow& follow,
                  RecountStatistics* statistics = nullptr) {
     exchange(scene, change);
-    const Blockers& blockers = follow(change.group);
+    const Blockers& blockers = follow(change.groups.front());
     CountsPatch counts = recounted(scene.receivers, blockers, scene.transfer, change.difference,
                                    recount_options(scene), {}, statistics);
     exchange(scene.transfer.counts, counts);
@@ -544,7 +544,7 @@ public:
     SceneChange bring_back(std::uint32_t group) { return make(brought_back(scene_, group)); }
     void undo(SceneChange change) {
         exchange(scene_, change);
-        static_cast<void>(followed(change.group));
+        static_cast<void>(followed(change.groups.front()));
     }
     /// The transfer of the mesh that has not these triangles at all, for the same receivers.
     [[nodiscard]] Transfer of_rest(const std::vector<std::uint32_t>& groups) const {

@@ -550,6 +550,62 @@ TEST(Moves, TheLightFollowsAPose) {
     EXPECT_THAT(refusal([&] { lit.moves().drag(flat); }), HasSubstr("a place to drag a group to"));
 }
 
+TEST(Moves, SeveralThingsMoveAtOnce) {
+    LitScene lit(before());
+    light(lit);
+    const std::vector<glm::vec3> at_first = radiance_of(lit);
+    std::vector<GroupMove> moves = {
+        move_of(before(), {.name = "lamp", .by = {1.0, -0.2, 0.5}, .degrees = 70.0}),
+        move_of(before(), Step)};
+    Scene together = before(), in_turn = before();
+    for (const GroupMove& own : moves)
+        move(in_turn, own);
+    const prt::SceneChange change = move(together, moves);
+    EXPECT_EQ(change.groups, (std::vector<std::uint32_t>{2, 1}));
+    prt::expect_same(together.transfer, in_turn.transfer);
+    EXPECT_EQ(together.receivers.positions, in_turn.receivers.positions);
+    EXPECT_EQ(together.bounces->rays.num_hits, in_turn.bounces->rays.num_hits);
+
+    const MoveReport report = lit.moves().move(moves);
+    EXPECT_GT(report.num_moved, 642u) << "the ball's vertices, and the lamp's";
+    LitScene anew(together);
+    light(anew);
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_TRUE(lit.moves().undo());
+    EXPECT_EQ(radiance_of(lit), at_first);
+    EXPECT_FALSE(lit.moves().undo()) << "it was a step";
+    EXPECT_TRUE(lit.moves().redo());
+    EXPECT_EQ(radiance_of(lit), radiance_of(anew));
+    EXPECT_TRUE(lit.moves().undo());
+
+    EXPECT_THAT(refusal([&] { lit.moves().move(std::vector<GroupMove>()); }),
+                HasSubstr("expected groups to move, got none"));
+    moves[0].going = Going::Away;
+    EXPECT_THAT(refusal([&] { lit.moves().move(moves); }), HasSubstr("got lamp, which is taken"));
+    moves[0] = moves[1];
+    EXPECT_THAT(refusal([&] { lit.moves().move(moves); }), HasSubstr("got ball twice"));
+    EXPECT_EQ(radiance_of(lit), at_first);
+}
+
+TEST(Moves, WhatIsTouchedFollowsSeveralThings) {
+    const Scene scene = precompute(touching_things(), without_bounces());
+    const std::vector<GroupMove> moves = {
+        move_of(scene, {.name = "ball", .by = {0.0, 0.5, 0.0}}),
+        move_of(scene, {.name = "crate", .by = {1.53, 0.0, 0.22}})};
+    Scene together = scene, in_turn = scene;
+    for (const GroupMove& own : moves)
+        move(in_turn, own);
+    prt::SceneChange change = move(together, moves);
+    EXPECT_EQ(together.receivers.positions, in_turn.receivers.positions);
+    EXPECT_EQ(together.mesh.lifts, in_turn.mesh.lifts);
+    prt::expect_same(together.transfer, in_turn.transfer);
+    prt::exchange(together, change);
+    EXPECT_EQ(together.receivers.positions, scene.receivers.positions);
+    EXPECT_EQ(together.mesh.lifts, scene.mesh.lifts);
+    EXPECT_EQ(together.free_lifts, scene.free_lifts);
+    prt::expect_same(together.transfer, scene.transfer);
+}
+
 class MovesFile : public tests::FolderTest {};
 
 TEST_F(MovesFile, KeepsWhereVerticesWouldLookFrom) {
