@@ -1,6 +1,7 @@
 #include "prt/bounces/bounce_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -44,41 +45,86 @@ public:
     }
 
     /// Calls visit(i) for those of the first so many directions that lie in a cone, and for some
-    /// beside it: about ten times as fast as finding the directions.
+    /// beside it: much faster than finding the directions.
     template<typename Visit>
     void for_near(std::uint32_t count, std::span<const DirectionCone> cones,
                   const Visit& visit) const {
-        // Angles in 2^-12 of a turn make an error of 8e-4, heights near 0 one of 3e-4.
-        constexpr float Slack = 2e-3f;
-        struct Local {
-            float x, y, z, least;
-        };
-        std::vector<Local> local;
-        for (const DirectionCone& cone : cones) {
-            const glm::vec3 axis(glm::dvec3(cone.axis) * frame_);
-            const Local own{axis.x, axis.y, axis.z, cone.cosine - Slack};
-            const bool is_below =
-                own.least > 0.0f && own.z < -std::sqrt(1.0f - own.least * own.least);
-            if (!is_below)
-                local.push_back(own);
-        }
-        if (local.empty())
+        std::vector<NearCone> near;
+        for (const DirectionCone& cone : cones)
+            if (const NearCone own(glm::vec3(glm::dvec3(cone.axis) * frame_), cone.cosine);
+                own.is_above())
+                near.push_back(own);
+        if (near.empty())
             return;
+        // The plain ranges first, of many directions at a time: compilers make vectors of that.
+        constexpr std::uint32_t NumAtATime = 32;
+        const std::uint32_t step_s = fixed(cubemap::R2StepS), step_t = fixed(cubemap::R2StepT);
         std::uint32_t s = fixed(shift_.x), t = fixed(shift_.y);
-        for (std::uint32_t i = 0; i < count;
-             ++i, s += fixed(cubemap::R2StepS), t += fixed(cubemap::R2StepT)) {
-            const float squared = 0x1p-32f * static_cast<float>(s);
-            const float radius = std::sqrt(squared), height = std::sqrt(1.0f - squared);
-            const glm::vec2& turn = turns()[t >> (32u - TurnBits)];
-            for (const auto& [x, y, z, least] : local)
-                if (radius * (turn.x * x + turn.y * y) + height * z >= least) {
-                    visit(i);
-                    break;
-                }
+        for (std::uint32_t begin = 0; begin < count; begin += NumAtATime) {
+            std::array<std::uint32_t, NumAtATime> are_near{};
+            for (const NearCone& cone : near) {
+                const Range heights = cone.heights, turns = cone.turns;
+                for (std::uint32_t i = 0; i < NumAtATime; ++i)
+                    are_near[i] |= static_cast<std::uint32_t>(heights.has(s + i * step_s)) &
+                                   static_cast<std::uint32_t>(turns.has(t + i * step_t));
+            }
+            const std::uint32_t size = std::min(NumAtATime, count - begin);
+            for (std::uint32_t i = 0; i < size; ++i)
+                if (are_near[i] != 0 && is_near(s + i * step_s, t + i * step_t, near))
+                    visit(begin + i);
+            s += NumAtATime * step_s;
+            t += NumAtATime * step_t;
         }
     }
 
 private:
+    /// Values in 2^-32, which may go through 1 to 0.
+    struct Range {
+        std::uint32_t low = 0, size = ~std::uint32_t{0};
+        [[nodiscard]] bool has(std::uint32_t value) const { return value - low <= size; }
+    };
+    static Range range(double low, double high) {
+        constexpr double Margin = 1e-5; // of fixed() and of floats
+        const double size = high - low + 2.0 * Margin;
+        return size < 1.0 ? Range{fixed(glm::fract(low - Margin)), fixed(size)} : Range{};
+    }
+
+    /// A cone in the frame, and what places its directions above the horizon have.
+    struct NearCone {
+        NearCone(const glm::vec3& own_axis, float cosine)
+            : axis(own_axis), least(std::max(cosine - Slack, -1.0f)) {
+            const float sine = std::sqrt(1.0f - least * least);
+            const float across = std::sqrt(std::max(1.0f - axis.z * axis.z, 0.0f));
+            const bool has_top = axis.z >= least, has_bottom = -axis.z >= least;
+            highest = has_top ? 1.0f : axis.z * least + across * sine;
+            const float lowest = has_bottom ? 0.0f : std::max(axis.z * least - across * sine, 0.0f);
+            heights = range(1.0f - highest * highest, 1.0f - lowest * lowest);
+            if (has_top || has_bottom)
+                return;
+            constexpr float Turn = 2.0f * std::numbers::pi_v<float>;
+            const float middle = std::atan2(axis.y, axis.x) / Turn;
+            const float half = std::asin(std::min(sine / across, 1.0f)) / Turn;
+            turns = range(middle - half, middle + half);
+        }
+        [[nodiscard]] bool is_above() const { return highest >= 0.0f; }
+
+        // Angles in 2^-12 of a turn make an error of 8e-4, heights near 0 one of 3e-4.
+        static constexpr float Slack = 2e-3f;
+        glm::vec3 axis;
+        float least, highest = 0.0f;
+        Range heights, turns;
+    };
+
+    static bool is_near(std::uint32_t s, std::uint32_t t, std::span<const NearCone> cones) {
+        const float squared = 0x1p-32f * static_cast<float>(s);
+        const float radius = std::sqrt(squared), height = std::sqrt(1.0f - squared);
+        const glm::vec2& turn = turns()[t >> (32u - TurnBits)];
+        const glm::vec3 direction(radius * turn.x, radius * turn.y, height);
+        return std::ranges::any_of(cones, [&](const NearCone& cone) {
+            return glm::dot(direction, cone.axis) >= cone.least;
+        });
+    }
+
     static constexpr std::uint32_t TurnBits = 12;
 
     /// Returns a part of 1 in 2^-32.

@@ -14,13 +14,16 @@ namespace relumine::prt {
 namespace {
 
 /// A balanced tree of points: the middle of each range splits it along the axis at which it is
-/// widest.
+/// widest, down to a few points that are asked one after the other.
 class PointTree {
 public:
     explicit PointTree(std::span<const glm::vec3> points)
-        : points_(points), order_(points.size()), axes_(points.size()) {
+        : order_(points.size()), axes_(points.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
-        split(0, order_.size());
+        split(points, 0, order_.size());
+        points_.reserve(points.size());
+        for (const std::uint32_t place : order_)
+            points_.push_back(points[place]);
     }
 
     /// Calls visit(place, squared distance) for every point within the radius, which `visit`
@@ -31,13 +34,15 @@ public:
     }
 
 private:
-    void split(std::size_t begin, std::size_t end) {
-        if (end - begin < 2)
+    static constexpr std::size_t Few = 8;
+
+    void split(std::span<const glm::vec3> points, std::size_t begin, std::size_t end) {
+        if (end - begin <= Few)
             return;
-        glm::vec3 low = points_[order_[begin]], high = low;
+        glm::vec3 low = points[order_[begin]], high = low;
         for (std::size_t i = begin; i < end; ++i) {
-            low = glm::min(low, points_[order_[i]]);
-            high = glm::max(high, points_[order_[i]]);
+            low = glm::min(low, points[order_[i]]);
+            high = glm::max(high, points[order_[i]]);
         }
         const glm::vec3 size = high - low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -46,27 +51,30 @@ private:
             return order_.begin() + static_cast<std::ptrdiff_t>(i);
         };
         std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-            return std::pair(points_[a][axis], a) < std::pair(points_[b][axis], b);
+            return std::pair(points[a][axis], a) < std::pair(points[b][axis], b);
         });
         axes_[middle] = static_cast<std::uint8_t>(axis);
-        split(begin, middle);
-        split(middle + 1, end);
+        split(points, begin, middle);
+        split(points, middle + 1, end);
     }
 
     template<typename Visit>
     void visit_range(std::size_t begin, std::size_t end, const glm::vec3& center,
                      float& squared_radius, const Visit& visit) const {
-        if (begin == end)
+        const auto ask = [&](std::size_t i) {
+            const glm::vec3 offset = points_[i] - center;
+            const float squared_distance = glm::dot(offset, offset);
+            if (squared_distance <= squared_radius)
+                visit(order_[i], squared_distance);
+        };
+        if (end - begin <= Few) {
+            for (std::size_t i = begin; i < end; ++i)
+                ask(i);
             return;
+        }
         const std::size_t middle = begin + (end - begin) / 2;
-        const glm::vec3& point = points_[order_[middle]];
-        const glm::vec3 offset = point - center;
-        const float squared_distance = glm::dot(offset, offset);
-        if (squared_distance <= squared_radius)
-            visit(order_[middle], squared_distance);
-        if (end - begin == 1)
-            return;
-        const float across = center[axes_[middle]] - point[axes_[middle]];
+        ask(middle);
+        const float across = center[axes_[middle]] - points_[middle][axes_[middle]];
         const auto [near_begin, near_end] =
             across < 0.0f ? std::pair(begin, middle) : std::pair(middle + 1, end);
         visit_range(near_begin, near_end, center, squared_radius, visit);
@@ -77,7 +85,8 @@ private:
         visit_range(far_begin, far_end, center, squared_radius, visit);
     }
 
-    std::span<const glm::vec3> points_;
+    /// [n] by order_
+    std::vector<glm::vec3> points_;
     std::vector<std::uint32_t> order_;
     /// [n] of the point in the middle of a range.
     std::vector<std::uint8_t> axes_;

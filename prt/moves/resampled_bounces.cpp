@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -171,13 +172,17 @@ private:
 class Growth {
 public:
     explicit Growth(const BounceMatrix& matrix)
-        : radius_(matrix.spectral_radius), few_(spectral_radius(matrix, FewBounces)) {}
+        : radius_(matrix.spectral_radius),
+          few_(matrix.rays.early_radius > 0.0f ? matrix.rays.early_radius
+                                               : spectral_radius(matrix, FewBounces)) {}
 
-    [[nodiscard]] float radius_of(const BounceMatrix& next) const {
+    void set_radius_of(BounceMatrix& next) const {
         constexpr float Small = 0.01f;
         const float few = spectral_radius(next, FewBounces);
-        return std::abs(few - few_) < Small * few_ ? std::min(radius_ * (few / few_), 1.0f)
-                                                   : spectral_radius(next);
+        next.rays.early_radius = few;
+        next.spectral_radius = std::abs(few - few_) < Small * few_
+                                   ? std::min(radius_ * (few / few_), 1.0f)
+                                   : spectral_radius(next);
     }
 
 private:
@@ -225,14 +230,16 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
             if (row.is_whole)
                 continue;
             const glm::vec3 origin = origin_of(place);
-            const MetBoxes boxes(difference.boxes, {origin, origin});
+            std::optional<MetBoxes> boxes;
             std::vector<float> reaches; // up to where nothing changed
             const std::vector<std::uint32_t> chosen = asked.sampler.chosen(
                 own, rays.num_directions[place], cones,
                 [&](const glm::dvec3& direction, std::uint32_t cluster) {
                     const bool is_opened = (of_block[cluster] >> (place - begin) & 1u) != 0;
+                    if (!boxes)
+                        boxes.emplace(difference.boxes, mesh::Bounds{origin, origin});
                     const float reach =
-                        is_opened ? 0.0f : boxes.nearest(inverse(glm::vec3(direction)));
+                        is_opened ? 0.0f : boxes->nearest(inverse(glm::vec3(direction)));
                     const bool is_wanted = reach < std::numeric_limits<float>::infinity();
                     if (is_wanted)
                         reaches.push_back(reach);
@@ -318,13 +325,12 @@ BouncesPatch ResampledBounces::update(BounceMatrix& matrix, const BounceView& no
                                                    patch.distances, all, &matrix.averaged));
     const Growth growth_before(matrix);
     patch.weights = matrix.weights;
-    patch.spectral_radius = matrix.spectral_radius;
     exchange(matrix, patch);
     for (std::size_t place = 0; place < all.size(); ++place)
         matrix.weights[place] =
             row_weight(matrix, place, closed_part(transfer.normals[place], now.open_parts[place]),
                        matrix.rays.num_hits);
-    matrix.spectral_radius = growth_before.radius_of(matrix);
+    growth_before.set_radius_of(matrix);
     return patch;
 }
 
