@@ -164,40 +164,71 @@ BounceSampler::BounceSampler(const mesh::TriangleMesh& mesh, const Receivers& re
     }
 }
 
+/// What a receiver looks with.
+class BounceSampler::Look {
+public:
+    Look(const BounceSampler& sampler, const PartReceiver& of_part)
+        : sampler_(sampler), index_(of_part.index),
+          receiver_(sampler.transfer_.order[of_part.place]),
+          directions_(sampler.transfer_.normals[of_part.place], receiver_) {
+        const Receivers& receivers = sampler.receivers_;
+        const mesh::TriangleMesh& mesh = sampler.mesh_;
+        const glm::vec3& normal = sampler.transfer_.normals[of_part.place];
+        origin_ = ray_origin(receivers.positions[receiver_], normal, sampler.options_.bias);
+        // A receiver that touches another surface looks from inside of its own solid, and gets no
+        // light: it must not meet the other surface from there (lit_position.h).
+        const glm::vec3 own = receivers.points.empty()
+                                  ? mesh.positions[receiver_]
+                                  : value_at(mesh, mesh.positions, receivers.points[receiver_]);
+        is_inside_ = glm::dot(origin_ - own, normal) < 0.0f;
+    }
+
+    [[nodiscard]] const CosineDirections& directions() const { return directions_; }
+    [[nodiscard]] std::uint32_t leaf_at(const glm::dvec3& direction) const {
+        return sampler_.transfer_.quadtree.leaf_at(cubemap::face_point(direction));
+    }
+
+    /// Looks into direction i, which is in that leaf. Returns the number of rays.
+    template<typename Visit>
+    std::uint64_t into(std::uint32_t i, const glm::dvec3& direction, std::uint32_t leaf,
+                       const Visit& visit) const {
+        if (sampler_.transfer_.counts.count(index_, leaf) == FullCount)
+            return 0;
+        const auto met = sampler_.rays_.closest_hit(origin_, glm::vec3(direction));
+        if (!met)
+            return 1;
+        const Hit hit = sampler_.twins_.facing(*met, glm::vec3(direction));
+        const mesh::TriangleMesh& mesh = sampler_.mesh_;
+        const auto distance = static_cast<double>(glm::distance(
+            value_at(mesh, mesh.positions, MeshPoint{hit.triangle, hit.barycentric}), origin_));
+        visit(i, RayFate{is_inside_ ? NoEmitter
+                                    : sampler_.emitter_of(hit, glm::vec3(direction),
+                                                          choice_of(receiver_, i)),
+                         1.0 / distance});
+        return 1;
+    }
+
+private:
+    const BounceSampler& sampler_;
+    std::size_t index_;
+    std::uint32_t receiver_;
+    CosineDirections directions_;
+    glm::vec3 origin_{0.0f};
+    bool is_inside_ = false;
+};
+
 /// Looks into `count` directions: `number_of(i)` is the number of the i-th.
 template<typename NumberOf, typename Visit>
 std::uint64_t BounceSampler::look_at(const PartReceiver& of_part, std::size_t count,
                                      const NumberOf& number_of, const Visit& visit) const {
     if (closure_of(of_part) == 0.0)
         return 0;
-    const std::uint32_t receiver = transfer_.order[of_part.place];
-    const glm::vec3& normal = transfer_.normals[of_part.place];
-    const CosineDirections directions(normal, receiver);
-    const glm::vec3 origin = ray_origin(receivers_.positions[receiver], normal, options_.bias);
-    // A receiver that touches another surface looks from inside of its own solid, and gets no
-    // light: it must not meet the other surface from there (lit_position.h).
-    const glm::vec3 own = receivers_.points.empty()
-                              ? mesh_.positions[receiver]
-                              : value_at(mesh_, mesh_.positions, receivers_.points[receiver]);
-    const bool is_inside = glm::dot(origin - own, normal) < 0.0f;
+    const Look look(*this, of_part);
     std::uint64_t num_rays = 0;
     for (std::size_t place = 0; place < count; ++place) {
         const std::uint32_t i = number_of(place);
-        const glm::dvec3 direction = directions[i];
-        const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(direction));
-        if (transfer_.counts.count(of_part.index, leaf) == FullCount)
-            continue;
-        ++num_rays;
-        const auto met = rays_.closest_hit(origin, glm::vec3(direction));
-        if (!met)
-            continue;
-        const Hit hit = twins_.facing(*met, glm::vec3(direction));
-        const MeshPoint at{hit.triangle, hit.barycentric};
-        const auto distance =
-            static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
-        visit(i, RayFate{is_inside ? NoEmitter
-                                   : emitter_of(hit, glm::vec3(direction), choice_of(receiver, i)),
-                         1.0 / distance});
+        const glm::dvec3 direction = look.directions()[i];
+        num_rays += look.into(i, direction, look.leaf_at(direction), visit);
     }
     return num_rays;
 }
@@ -221,19 +252,18 @@ BounceSampler::look(const PartReceiver& receiver, std::span<const std::uint32_t>
         receiver, directions.size(), [directions](std::size_t i) { return directions[i]; }, visit);
 }
 
-std::vector<std::uint32_t> BounceSampler::chosen(
+void BounceSampler::look_near(
     const PartReceiver& receiver, std::uint32_t num_directions,
     std::span<const DirectionCone> cones,
-    const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const {
-    const CosineDirections directions(transfer_.normals[receiver.place],
-                                      transfer_.order[receiver.place]);
-    std::vector<std::uint32_t> result;
-    directions.for_near(num_directions, cones, [&](std::uint32_t i) {
-        const glm::dvec3 direction = directions[i];
-        if (is_wanted(direction, transfer_.quadtree.leaf_at(cubemap::face_point(direction))))
-            result.push_back(i);
+    const std::function<bool(std::uint32_t, const glm::dvec3&, std::uint32_t)>& is_wanted,
+    const std::function<void(std::uint32_t, const RayFate&)>& visit) const {
+    const Look look(*this, receiver);
+    look.directions().for_near(num_directions, cones, [&](std::uint32_t i) {
+        const glm::dvec3 direction = look.directions()[i];
+        const std::uint32_t leaf = look.leaf_at(direction);
+        if (is_wanted(i, direction, leaf))
+            look.into(i, direction, leaf, visit);
     });
-    return result;
 }
 
 std::uint64_t BounceSampler::look_around(const PartReceiver& point,

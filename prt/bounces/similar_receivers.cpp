@@ -104,6 +104,8 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
         const std::size_t place = wanted[i];
         // The nearest so far, the farthest of them first; equal distances by place.
         std::vector<std::pair<float, std::uint32_t>> nearest;
+        nearest.reserve(limits.max_size);
+        bool is_bounded = false; // by those of before
         const float radius = limits.max_error * distances[place];
         float squared_radius = radius * radius;
         const auto is_similar = [&](std::size_t other, float squared_distance) {
@@ -117,6 +119,8 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
             if (!is_similar(other, squared_distance))
                 return;
             nearest.emplace_back(squared_distance, other);
+            if (is_bounded)
+                return;
             std::push_heap(nearest.begin(), nearest.end());
             if (nearest.size() >= limits.max_size) {
                 std::pop_heap(nearest.begin(), nearest.end());
@@ -141,12 +145,19 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                 farthest = std::max(farthest, squared_distance);
                 ++count;
             }
-            if (count == limits.max_size)
+            is_bounded = count == limits.max_size;
+            if (is_bounded)
                 squared_radius = std::min(squared_radius, Rounding * farthest);
         }
         if (radius > 0.0f && limits.max_size > 1)
             tree.visit_near(positions[place], squared_radius, consider);
+        if (nearest.size() >= limits.max_size) {
+            const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(limits.max_size - 1);
+            std::nth_element(nearest.begin(), end, nearest.end());
+            nearest.erase(end, nearest.end());
+        }
         std::vector<std::uint32_t>& list = lists[i];
+        list.reserve(nearest.size() + 1);
         list.push_back(static_cast<std::uint32_t>(place));
         for (const auto& [distance, other] : nearest)
             list.push_back(other);

@@ -231,43 +231,32 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
                 continue;
             const glm::vec3 origin = origin_of(place);
             std::optional<MetBoxes> boxes;
-            std::vector<float> reaches; // up to where nothing changed
-            const std::vector<std::uint32_t> chosen = asked.sampler.chosen(
+            float reach = 0.0f; // of the present ray: up to where nothing changed
+            asked.sampler.look_near(
                 own, rays.num_directions[place], cones,
-                [&](const glm::dvec3& direction, std::uint32_t cluster) {
-                    const bool is_opened = (of_block[cluster] >> (place - begin) & 1u) != 0;
+                [&](std::uint32_t direction_number, const glm::dvec3& direction,
+                    std::uint32_t cluster) {
                     if (!boxes)
                         boxes.emplace(difference.boxes, mesh::Bounds{origin, origin});
-                    const float reach =
-                        is_opened ? 0.0f : boxes->nearest(inverse(glm::vec3(direction)));
+                    const bool is_opened = (of_block[cluster] >> (place - begin) & 1u) != 0;
+                    reach = is_opened ? 0.0f : boxes->nearest(inverse(glm::vec3(direction)));
                     const bool is_wanted = reach < std::numeric_limits<float>::infinity();
                     if (is_wanted)
-                        reaches.push_back(reach);
+                        row.directions.push_back(direction_number);
                     return is_wanted;
+                },
+                [&](std::uint32_t direction_number, const RayFate& fate) {
+                    constexpr double Margin = 1.0 + 1e-4;
+                    if (static_cast<double>(reach) * fate.inverse_distance > Margin) {
+                        row.directions.pop_back(); // it ends before
+                        return;
+                    }
+                    ++row.num_hits;
+                    if (fate.emitter != NoEmitter)
+                        row.emitters.push_back(fate.emitter);
+                    if (direction_number < asked.options.min_directions)
+                        row.sum_inverse_distances += fate.inverse_distance;
                 });
-            std::size_t next = 0;
-            const auto take_up_to = [&](std::size_t end_of_chosen) {
-                for (; next < end_of_chosen; ++next)
-                    row.directions.push_back(chosen[next]);
-            };
-            std::size_t index = 0;
-            asked.sampler.look(own, chosen, [&](std::uint32_t direction, const RayFate& fate) {
-                while (chosen[index] != direction)
-                    ++index;
-                take_up_to(index); // those that met nothing
-                constexpr double Margin = 1.0 + 1e-4;
-                if (static_cast<double>(reaches[index]) * fate.inverse_distance > Margin) {
-                    ++next; // it ends before
-                    return;
-                }
-                take_up_to(index + 1);
-                ++row.num_hits;
-                if (fate.emitter != NoEmitter)
-                    row.emitters.push_back(fate.emitter);
-                if (direction < asked.options.min_directions)
-                    row.sum_inverse_distances += fate.inverse_distance;
-            });
-            take_up_to(chosen.size());
             std::ranges::sort(row.emitters);
         }
     });
