@@ -39,6 +39,8 @@ struct BounceRays {
     std::vector<std::uint32_t> num_directions = {}, num_hits = {};
     /// BounceSamples::distances
     std::vector<float> distances = {};
+    /// What the power iteration of spectral_radius() finds in its first bounces; 0: not known
+    float early_radius = 0.0f;
     bool operator==(const BounceRays&) const = default;
 };
 

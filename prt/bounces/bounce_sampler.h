@@ -81,12 +81,14 @@ public:
     std::uint64_t look(const PartReceiver& receiver, std::span<const std::uint32_t> directions,
                        const std::function<void(std::uint32_t, const RayFate&)>& visit) const;
 
-    /// Returns the numbers of those of the first so many directions that lie in one of the cones
-    /// and `is_wanted(direction, cluster)`. Some just outside of the cones are asked for as well.
-    [[nodiscard]] std::vector<std::uint32_t>
-    chosen(const PartReceiver& receiver, std::uint32_t num_directions,
-           std::span<const DirectionCone> cones,
-           const std::function<bool(const glm::dvec3&, std::uint32_t)>& is_wanted) const;
+    /// Looks into those of the first so many directions that lie in one of the cones and
+    /// `is_wanted(number, direction, cluster)`, and visits as look() does. Some just outside of the
+    /// cones are asked for as well.
+    void
+    look_near(const PartReceiver& receiver, std::uint32_t num_directions,
+              std::span<const DirectionCone> cones,
+              const std::function<bool(std::uint32_t, const glm::dvec3&, std::uint32_t)>& is_wanted,
+              const std::function<void(std::uint32_t, const RayFate&)>& visit) const;
 
     /// Finds what a point in space sees in each direction: the place of an emitter, or NoEmitter.
     /// Returns the number of rays.
@@ -100,6 +102,7 @@ public:
     [[nodiscard]] double squared_error(const PartReceiver& receiver, const RayHits& hits) const;
 
 private:
+    class Look;
     template<typename NumberOf, typename Visit>
     std::uint64_t look_at(const PartReceiver& receiver, std::size_t count,
                           const NumberOf& number_of, const Visit& visit) const;

@@ -14,13 +14,16 @@ namespace relumine::prt {
 namespace {
 
 /// A balanced tree of points: the middle of each range splits it along the axis at which it is
-/// widest.
+/// widest, down to a few points that are asked one after the other.
 class PointTree {
 public:
     explicit PointTree(std::span<const glm::vec3> points)
-        : points_(points), order_(points.size()), axes_(points.size()) {
+        : order_(points.size()), axes_(points.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
-        split(0, order_.size());
+        split(points, 0, order_.size());
+        points_.reserve(points.size());
+        for (const std::uint32_t place : order_)
+            points_.push_back(points[place]);
     }
 
     /// Calls visit(place, squared distance) for every point within the radius, which `visit`
@@ -31,13 +34,15 @@ public:
     }
 
 private:
-    void split(std::size_t begin, std::size_t end) {
-        if (end - begin < 2)
+    static constexpr std::size_t Few = 8;
+
+    void split(std::span<const glm::vec3> points, std::size_t begin, std::size_t end) {
+        if (end - begin <= Few)
             return;
-        glm::vec3 low = points_[order_[begin]], high = low;
+        glm::vec3 low = points[order_[begin]], high = low;
         for (std::size_t i = begin; i < end; ++i) {
-            low = glm::min(low, points_[order_[i]]);
-            high = glm::max(high, points_[order_[i]]);
+            low = glm::min(low, points[order_[i]]);
+            high = glm::max(high, points[order_[i]]);
         }
         const glm::vec3 size = high - low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -46,27 +51,30 @@ private:
             return order_.begin() + static_cast<std::ptrdiff_t>(i);
         };
         std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-            return std::pair(points_[a][axis], a) < std::pair(points_[b][axis], b);
+            return std::pair(points[a][axis], a) < std::pair(points[b][axis], b);
         });
         axes_[middle] = static_cast<std::uint8_t>(axis);
-        split(begin, middle);
-        split(middle + 1, end);
+        split(points, begin, middle);
+        split(points, middle + 1, end);
     }
 
     template<typename Visit>
     void visit_range(std::size_t begin, std::size_t end, const glm::vec3& center,
                      float& squared_radius, const Visit& visit) const {
-        if (begin == end)
+        const auto ask = [&](std::size_t i) {
+            const glm::vec3 offset = points_[i] - center;
+            const float squared_distance = glm::dot(offset, offset);
+            if (squared_distance <= squared_radius)
+                visit(order_[i], squared_distance);
+        };
+        if (end - begin <= Few) {
+            for (std::size_t i = begin; i < end; ++i)
+                ask(i);
             return;
+        }
         const std::size_t middle = begin + (end - begin) / 2;
-        const glm::vec3& point = points_[order_[middle]];
-        const glm::vec3 offset = point - center;
-        const float squared_distance = glm::dot(offset, offset);
-        if (squared_distance <= squared_radius)
-            visit(order_[middle], squared_distance);
-        if (end - begin == 1)
-            return;
-        const float across = center[axes_[middle]] - point[axes_[middle]];
+        ask(middle);
+        const float across = center[axes_[middle]] - points_[middle][axes_[middle]];
         const auto [near_begin, near_end] =
             across < 0.0f ? std::pair(begin, middle) : std::pair(middle + 1, end);
         visit_range(near_begin, near_end, center, squared_radius, visit);
@@ -77,7 +85,8 @@ private:
         visit_range(far_begin, far_end, center, squared_radius, visit);
     }
 
-    std::span<const glm::vec3> points_;
+    /// [n] by order_
+    std::vector<glm::vec3> points_;
     std::vector<std::uint32_t> order_;
     /// [n] of the point in the middle of a range.
     std::vector<std::uint8_t> axes_;
@@ -95,6 +104,8 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
         const std::size_t place = wanted[i];
         // The nearest so far, the farthest of them first; equal distances by place.
         std::vector<std::pair<float, std::uint32_t>> nearest;
+        nearest.reserve(limits.max_size);
+        bool is_bounded = false; // by those of before
         const float radius = limits.max_error * distances[place];
         float squared_radius = radius * radius;
         const auto is_similar = [&](std::size_t other, float squared_distance) {
@@ -108,6 +119,8 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
             if (!is_similar(other, squared_distance))
                 return;
             nearest.emplace_back(squared_distance, other);
+            if (is_bounded)
+                return;
             std::push_heap(nearest.begin(), nearest.end());
             if (nearest.size() >= limits.max_size) {
                 std::pop_heap(nearest.begin(), nearest.end());
@@ -132,12 +145,19 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                 farthest = std::max(farthest, squared_distance);
                 ++count;
             }
-            if (count == limits.max_size)
+            is_bounded = count == limits.max_size;
+            if (is_bounded)
                 squared_radius = std::min(squared_radius, Rounding * farthest);
         }
         if (radius > 0.0f && limits.max_size > 1)
             tree.visit_near(positions[place], squared_radius, consider);
+        if (nearest.size() >= limits.max_size) {
+            const auto end = nearest.begin() + static_cast<std::ptrdiff_t>(limits.max_size - 1);
+            std::nth_element(nearest.begin(), end, nearest.end());
+            nearest.erase(end, nearest.end());
+        }
         std::vector<std::uint32_t>& list = lists[i];
+        list.reserve(nearest.size() + 1);
         list.push_back(static_cast<std::uint32_t>(place));
         for (const auto& [distance, other] : nearest)
             list.push_back(other);

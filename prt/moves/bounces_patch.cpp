@@ -113,6 +113,7 @@ void exchange(BounceMatrix& matrix, BouncesPatch& patch) {
     matrix.rays.distances.swap(patch.distances);
     matrix.rays.num_hits.swap(patch.num_hits);
     std::swap(matrix.spectral_radius, patch.spectral_radius);
+    std::swap(matrix.rays.early_radius, patch.early_radius);
 }
 
 } // namespace relumine::prt

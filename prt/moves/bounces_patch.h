@@ -38,7 +38,7 @@ struct BouncesPatch {
     /// As BounceMatrix and BounceRays have them
     std::vector<float> weights = {}, distances = {};
     std::vector<std::uint32_t> num_hits = {};
-    float spectral_radius = 0.0f;
+    float spectral_radius = 0.0f, early_radius = 0.0f;
 };
 
 /// A second call undoes the first.

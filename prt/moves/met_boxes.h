@@ -83,6 +83,7 @@ class MetBoxes {
 public:
     MetBoxes(std::span<const mesh::Bounds> boxes, const mesh::Bounds& places) {
         mesh::Bounds all = no_box();
+        boxes_.reserve(boxes.size());
         for (const mesh::Bounds& box : boxes) {
             boxes_.push_back(difference(box, places));
             include(all, box);

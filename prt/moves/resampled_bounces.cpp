@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -171,13 +172,17 @@ private:
 class Growth {
 public:
     explicit Growth(const BounceMatrix& matrix)
-        : radius_(matrix.spectral_radius), few_(spectral_radius(matrix, FewBounces)) {}
+        : radius_(matrix.spectral_radius),
+          few_(matrix.rays.early_radius > 0.0f ? matrix.rays.early_radius
+                                               : spectral_radius(matrix, FewBounces)) {}
 
-    [[nodiscard]] float radius_of(const BounceMatrix& next) const {
+    void set_radius_of(BounceMatrix& next) const {
         constexpr float Small = 0.01f;
         const float few = spectral_radius(next, FewBounces);
-        return std::abs(few - few_) < Small * few_ ? std::min(radius_ * (few / few_), 1.0f)
-                                                   : spectral_radius(next);
+        next.rays.early_radius = few;
+        next.spectral_radius = std::abs(few - few_) < Small * few_
+                                   ? std::min(radius_ * (few / few_), 1.0f)
+                                   : spectral_radius(next);
     }
 
 private:
@@ -225,42 +230,33 @@ ResampledBounces::ResampledBounces(const BounceView& before, const SceneDifferen
             if (row.is_whole)
                 continue;
             const glm::vec3 origin = origin_of(place);
-            const MetBoxes boxes(difference.boxes, {origin, origin});
-            std::vector<float> reaches; // up to where nothing changed
-            const std::vector<std::uint32_t> chosen = asked.sampler.chosen(
+            std::optional<MetBoxes> boxes;
+            float reach = 0.0f; // of the present ray: up to where nothing changed
+            asked.sampler.look_near(
                 own, rays.num_directions[place], cones,
-                [&](const glm::dvec3& direction, std::uint32_t cluster) {
+                [&](std::uint32_t direction_number, const glm::dvec3& direction,
+                    std::uint32_t cluster) {
+                    if (!boxes)
+                        boxes.emplace(difference.boxes, mesh::Bounds{origin, origin});
                     const bool is_opened = (of_block[cluster] >> (place - begin) & 1u) != 0;
-                    const float reach =
-                        is_opened ? 0.0f : boxes.nearest(inverse(glm::vec3(direction)));
+                    reach = is_opened ? 0.0f : boxes->nearest(inverse(glm::vec3(direction)));
                     const bool is_wanted = reach < std::numeric_limits<float>::infinity();
                     if (is_wanted)
-                        reaches.push_back(reach);
+                        row.directions.push_back(direction_number);
                     return is_wanted;
+                },
+                [&](std::uint32_t direction_number, const RayFate& fate) {
+                    constexpr double Margin = 1.0 + 1e-4;
+                    if (static_cast<double>(reach) * fate.inverse_distance > Margin) {
+                        row.directions.pop_back(); // it ends before
+                        return;
+                    }
+                    ++row.num_hits;
+                    if (fate.emitter != NoEmitter)
+                        row.emitters.push_back(fate.emitter);
+                    if (direction_number < asked.options.min_directions)
+                        row.sum_inverse_distances += fate.inverse_distance;
                 });
-            std::size_t next = 0;
-            const auto take_up_to = [&](std::size_t end_of_chosen) {
-                for (; next < end_of_chosen; ++next)
-                    row.directions.push_back(chosen[next]);
-            };
-            std::size_t index = 0;
-            asked.sampler.look(own, chosen, [&](std::uint32_t direction, const RayFate& fate) {
-                while (chosen[index] != direction)
-                    ++index;
-                take_up_to(index); // those that met nothing
-                constexpr double Margin = 1.0 + 1e-4;
-                if (static_cast<double>(reaches[index]) * fate.inverse_distance > Margin) {
-                    ++next; // it ends before
-                    return;
-                }
-                take_up_to(index + 1);
-                ++row.num_hits;
-                if (fate.emitter != NoEmitter)
-                    row.emitters.push_back(fate.emitter);
-                if (direction < asked.options.min_directions)
-                    row.sum_inverse_distances += fate.inverse_distance;
-            });
-            take_up_to(chosen.size());
             std::ranges::sort(row.emitters);
         }
     });
@@ -318,13 +314,12 @@ BouncesPatch ResampledBounces::update(BounceMatrix& matrix, const BounceView& no
                                                    patch.distances, all, &matrix.averaged));
     const Growth growth_before(matrix);
     patch.weights = matrix.weights;
-    patch.spectral_radius = matrix.spectral_radius;
     exchange(matrix, patch);
     for (std::size_t place = 0; place < all.size(); ++place)
         matrix.weights[place] =
             row_weight(matrix, place, closed_part(transfer.normals[place], now.open_parts[place]),
                        matrix.rays.num_hits);
-    matrix.spectral_radius = growth_before.radius_of(matrix);
+    growth_before.set_radius_of(matrix);
     return patch;
 }
 

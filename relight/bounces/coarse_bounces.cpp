@@ -41,10 +41,12 @@ class RowSums {
 public:
     explicit RowSums(std::size_t num_groups) : sums_(num_groups), has_(num_groups) {}
 
-    void add(std::size_t group, float factor, const PaddedRgb& weight) {
-        if (!has_[group])
+    /// The weight is a copy, which no sum overlaps.
+    void add(std::size_t group, float factor, const PaddedRgb weight) {
+        if (has_[group] == 0) {
             groups_.push_back(static_cast<std::uint32_t>(group));
-        has_[group] = true;
+            has_[group] = 1;
+        }
         for (std::size_t c = 0; c < 4; ++c)
             sums_[group].rgb[c] += factor * weight.rgb[c];
     }
@@ -57,7 +59,7 @@ public:
             for (float& channel : entry.weight.rgb)
                 channel *= factor;
             sums_[group] = {};
-            has_[group] = false;
+            has_[group] = 0;
         }
         groups_.clear();
         return entries;
@@ -65,7 +67,7 @@ public:
 
 private:
     std::vector<PaddedRgb> sums_;
-    std::vector<bool> has_;
+    std::vector<std::uint8_t> has_;
     std::vector<std::uint32_t> groups_;
 };
 
