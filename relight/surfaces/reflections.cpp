@@ -355,10 +355,9 @@ glm::vec3 Reflections::in_mirror(const MetSurface& met, const prt::Surface& surf
                                  const glm::vec3& diffuse, const Surfaces& surfaces) const {
     // Rays of one fan look into nearly the same lobe: each asks for one ray of a fan of as many.
     // Which one has nothing to do with where it comes from.
-    const std::uint32_t num_asked =
-        std::max(met.num_rays / every_of(met, surface), std::uint32_t{1});
-    const std::uint32_t ray =
-        (5 * (met.ray / every_of(met, surface)) + number_of(met.fan_shift)) % num_asked;
+    const std::uint32_t every = every_of(met, surface);
+    const std::uint32_t num_asked = std::max(met.num_rays / every, std::uint32_t{1});
+    const std::uint32_t ray = (5 * (met.ray / every) + number_of(met.fan_shift)) % num_asked;
     const MirrorPoint point{.position = position,
                             .normal = normal,
                             .to_eye = -met.direction,

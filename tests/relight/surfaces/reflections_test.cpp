@@ -254,6 +254,36 @@ TEST(Reflections, WhereverRaysAreTheTailIsThere) {
     EXPECT_LT(most - least, 0.01);
 }
 
+/// All rays of a mirror look at one point of a metal. Together they find its highlight, which has
+/// the edge of a bright half in it.
+TEST(Reflections, AMetalInAMirrorHasNoGrain) {
+    cubemap::CubeMap room(R);
+    for (cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < R; ++y)
+            for (std::uint32_t x = 0; x < R; ++x) {
+                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
+                room.at(face, x, y) = glm::vec3(w.y > 0.7 ? 10.0f : 0.1f);
+            }
+    const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
+    const Reflections reflections(wall, 1e-4f, 16, room, {});
+    const auto paint = [&](const MetSurface& met) {
+        // Somewhere else, so that the wall hides nothing of the room.
+        const glm::vec3 normal = glm::normalize(glm::vec3(0.8f, 0.4f, -0.6f));
+        return reflections.in_mirror(met, metal(0.3f), glm::vec3(50.0f), normal, glm::vec3(0.0f),
+                                     NoSurface);
+    };
+    double sum = 0.0, square = 0.0;
+    constexpr std::uint32_t NumPixels = 200;
+    for (std::uint32_t i = 0; i < NumPixels; ++i) {
+        MirrorPoint point = seen_at(0.6f);
+        point.shift = ray_shift(i);
+        const double found = mirrored(reflections, metal(0.0f), point, paint).specular.g;
+        sum += found / NumPixels;
+        square += found * found / NumPixels;
+    }
+    EXPECT_LT(std::sqrt(std::max(square - sum * sum, 0.0)), 0.035 * sum);
+}
+
 TEST(Reflections, AMirrorShowsWhatItLooksAt) {
     // A wall of radiance 3 stands where the mirror looks, and hides the sky.
     const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
