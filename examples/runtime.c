@@ -46,8 +46,10 @@ int main(int argc, char** argv) {
         relumine_radiance(scene, radiance, count) != RELUMINE_OK)
         return failed("radiance");
     FILE* out = fopen(argv[2], "w");
-    if (out == NULL)
-        return failed(argv[2]);
+    if (out == NULL) {
+        fprintf(stderr, "%s: cannot be written\n", argv[2]);
+        return 1;
+    }
     fprintf(out, "ply\nformat ascii 1.0\nelement vertex %u\n", info.num_receivers);
     fprintf(out, "property float x\nproperty float y\nproperty float z\n");
     fprintf(out, "property float red\nproperty float green\nproperty float blue\nend_header\n");

@@ -382,7 +382,8 @@ void bind_scenes(py::module_& module) {
     mesh_type.def_readonly("source", &Mesh::source)
         .def_readonly("source_hash", &Mesh::source_hash)
         .def_readonly("floor", &Mesh::floor_vertices)
-        .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; })
+        .def_property_readonly("warnings",
+                               [](const Mesh& mesh) { return mesh::left_out(mesh.geometry); })
         .def_property_readonly("notes", [](const Mesh& mesh) { return mesh.geometry.notes; });
 
     py::class_<Scene, std::shared_ptr<Scene>> scene_type(module, "Scene");

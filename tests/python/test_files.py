@@ -108,6 +108,13 @@ def test_variants_of_a_mesh(folder):
         relumine.Mesh.load(folder / "a.gltf", variant="summer")
 
 
+def test_missing_textures(folder):
+    (folder / "a.mtl").write_text("newmtl paint\nmap_Kd nowhere.png\n")
+    (folder / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl paint\nf 1/1 2/1 3/1\n")
+    with pytest.warns(UserWarning, match="no nowhere.png is found"):
+        relumine.Mesh.load(folder / "a.obj")
+
+
 def test_missing_files(folder):
     calls = {
         "a.ply": relumine.Mesh.load,

@@ -6,13 +6,21 @@ import { RelighterWorker } from 'relumine';
 import { LitObject } from 'relumine/three';
 
 const words = document.querySelector('p');
-addEventListener('unhandledrejection', ({ reason }) => { words.textContent = reason.message; });
-
 const asked = new URLSearchParams(location.search);
-const folder = new URL(asked.get('scene') ?? './', location.href);
-const gltf = await new GLTFLoader().loadAsync(new URL('scene.glb', folder).href);
-const relighter = await RelighterWorker.open(new URL('scene.relight', folder).href);
-const lit = await LitObject.of(gltf.scene, relighter);
+const folder = new URL(`${asked.get('scene') ?? '.'}/`, location.href);
+
+/** What a promise brings; what fails is said on the page. */
+async function told(promise) {
+    try {
+        return await promise;
+    } catch (error) {
+        words.textContent = error.message;
+        throw error;
+    }
+}
+const gltf = await told(new GLTFLoader().loadAsync(new URL('scene.glb', folder).href));
+const relighter = await told(RelighterWorker.open(new URL('scene.relight', folder).href));
+const lit = await told(LitObject.of(gltf.scene, relighter));
 const world = new THREE.Scene().add(gltf.scene);
 if (lit.rest)
     world.add(lit.rest);
@@ -37,8 +45,8 @@ async function show() {
         await relighter.bounce();
     await lit.update();
 }
-await relighter.light({ ...await sky(), resolution: 64 });
-await show();
+await told(sky().then((map) => relighter.light({ ...map, resolution: 64 })));
+await told(show());
 
 const renderer = new THREE.WebGLRenderer({ antialias: true });
 renderer.toneMapping = THREE.ACESFilmicToneMapping;
