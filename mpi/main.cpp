@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "app/command_line/command_line.h"
+#include "app/command_line/printed.h"
 #include "app/commands.h"
 #include "app/program.h"
 #include "app/session.h"
