@@ -387,6 +387,14 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
     command.add(material_row(options.materials));
 }
 
+/// A line or two on a scene that a command makes by the way.
+void say_scene(const std::string& path, const PrecomputeReport& facts, double seconds,
+               const std::string& more, Session& session) {
+    say_refinement(facts, session);
+    session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s{}", path,
+                            facts.num_vertices, facts.clusters.num_clusters, seconds, more));
+}
+
 } // namespace
 
 Scene first_scene(const std::string& path, const MeshOptions& read,
@@ -411,10 +419,8 @@ Scene first_scene(const std::string& path, const MeshOptions& read,
                             : precompute(std::move(mesh), {}, work, &facts);
         session.end_progress();
         if (facts.num_vertices != 0) {
-            say_refinement(facts, session);
-            session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s{}", path,
-                                    facts.num_vertices, facts.clusters.num_clusters, watch.total(),
-                                    cache ? ", kept in " + cache->folder.string() : ""));
+            say_scene(path, facts, watch.total(),
+                      cache ? ", kept in " + cache->folder.string() : "", session);
         }
         return scene;
     } catch (const std::invalid_argument& error) {
@@ -431,9 +437,7 @@ Scene precomputed_scene(const std::string& path, Session& session) {
     const PrecomputeOptions keeps_groups{.movable = !mesh.geometry.groups.empty()};
     Scene scene = precomputed(std::move(mesh), keeps_groups, precompute_work(session), facts);
     session.end_progress();
-    say_refinement(facts, session);
-    session.say(fmt::format("{}: {} vertices -> {} clusters in {:.1f} s", path, facts.num_vertices,
-                            facts.clusters.num_clusters, watch.total()));
+    say_scene(path, facts, watch.total(), "", session);
     return scene;
 }
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <initializer_list>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "mesh/materials/image_decoder.h"
 
 namespace relumine::mesh {
 
@@ -17,14 +18,21 @@ namespace {
 
 /// The name of an image's type; empty for one that glTF does not have.
 std::string_view type_of(std::span<const std::byte> file) {
-    const auto begins = [&](std::size_t at, std::string_view bytes) {
-        return file.size() >= at + bytes.size() &&
-               std::memcmp(file.data() + at, bytes.data(), bytes.size()) == 0;
-    };
-    return begins(0, "\x89PNG")                     ? "image/png"
-           : begins(0, "\xff\xd8\xff")              ? "image/jpeg"
-           : begins(0, "RIFF") && begins(8, "WEBP") ? "image/webp"
-                                                    : "";
+    switch (image_format(file)) {
+    case ImageFormat::Png:
+        return "image/png";
+    case ImageFormat::Jpeg:
+        return "image/jpeg";
+    case ImageFormat::WebP:
+        return "image/webp";
+    default:
+        return "";
+    }
+}
+
+/// The brightest channel of an emission.
+float strength_of(const glm::vec3& emission) {
+    return std::max({emission.r, emission.g, emission.b});
 }
 
 } // namespace
@@ -195,11 +203,9 @@ Json GlbMaterials::material(const Material& material) {
         normals.set("scale", double{material.normal_scale});
         result.set("normalTexture", std::move(normals));
     }
-    const glm::vec3& emission = material.emission;
     // Factors are at most 1; the extension has the rest.
-    const float strength = std::max({emission.r, emission.g, emission.b});
-    if (strength > 0.0f) {
-        result.set("emissiveFactor", emission / std::max(strength, 1.0f));
+    if (const float strength = strength_of(material.emission); strength > 0.0f) {
+        result.set("emissiveFactor", material.emission / std::max(strength, 1.0f));
         set_texture(result, "emissiveTexture", material.emission_texture);
     }
     if (material.model != MaterialModel::MetallicRoughness &&
@@ -226,8 +232,7 @@ Json GlbMaterials::extensions(const Material& material) {
                 set_texture(extension, key, *slot);
             result.set(name, std::move(extension));
         };
-    const glm::vec3& emission = material.emission;
-    if (const float strength = std::max({emission.r, emission.g, emission.b}); strength > 1.0f)
+    if (const float strength = strength_of(material.emission); strength > 1.0f)
         set("KHR_materials_emissive_strength", {{"emissiveStrength", double{strength}}});
     if (material.transmission > 0.0f)
         set("KHR_materials_transmission", {{"transmissionFactor", double{material.transmission}}},

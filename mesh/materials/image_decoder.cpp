@@ -71,25 +71,6 @@ void decode_webp(std::span<const std::byte> file, bool with_alpha,
             "expected a whole image of {} x {} pixels, got broken data", width, height));
 }
 
-enum class Format { Png, Jpeg, WebP, Avif, Bmp, Tga };
-
-/// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
-/// mark counts as TGA.
-Format format_of(std::span<const std::byte> file) {
-    const auto begins_with = [&](std::string_view magic) {
-        return file.size() >= magic.size() &&
-               std::memcmp(file.data(), magic.data(), magic.size()) == 0;
-    };
-    const bool is_webp =
-        begins_with("RIFF") && file.size() >= 12 && std::memcmp(file.data() + 8, "WEBP", 4) == 0;
-    return begins_with("\x89PNG")        ? Format::Png
-           : begins_with("\xff\xd8\xff") ? Format::Jpeg
-           : is_webp                     ? Format::WebP
-           : files::is_avif(file)        ? Format::Avif
-           : begins_with("BM")           ? Format::Bmp
-                                         : Format::Tga;
-}
-
 /// Returns an unsigned number, low byte first. Bytes beyond the end count as 0.
 std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::size_t num_bytes) {
     std::uint64_t value = 0;
@@ -99,25 +80,25 @@ std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::si
 }
 
 /// Returns the fewest bytes that the rows of an image of this size can take.
-std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::uint64_t width,
+std::uint64_t least_bytes(ImageFormat format, std::span<const std::byte> file, std::uint64_t width,
                           std::uint64_t height) {
     const std::uint64_t num_pixels = width * height;
     switch (format) {
-    case Format::Png: // deflate packs at most 1032 to 1, and a pixel has at least one bit
+    case ImageFormat::Png: // deflate packs at most 1032 to 1, and a pixel has at least one bit
         return num_pixels / 1032 / 8;
     // A block of 64 takes at least a bit, and chroma may be four times as coarse in each direction.
-    case Format::Jpeg:
+    case ImageFormat::Jpeg:
         return num_pixels / 1024;
-    case Format::WebP: // one colour takes no bytes at all
-    case Format::Avif:
+    case ImageFormat::WebP: // one colour takes no bytes at all
+    case ImageFormat::Avif:
         return 0;
     // stb_image reads only uncompressed files. Rows end at multiples of four bytes.
-    case Format::Bmp: {
+    case ImageFormat::Bmp: {
         const std::uint64_t data = number_at(file, 10, 4);
         const std::uint64_t bits = number_at(file, number_at(file, 14, 4) == 12 ? 24 : 28, 2);
         return data + (width * bits + 31) / 32 * 4 * height;
     }
-    case Format::Tga: {
+    case ImageFormat::Tga: {
         const std::uint64_t kind = number_at(file, 2, 1), bits = number_at(file, 16, 1);
         const std::uint64_t num_bytes = num_pixels * ((bits + 7) / 8);
         return (kind & 8) != 0 ? num_pixels / 64
@@ -155,7 +136,7 @@ void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint6
         throw std::runtime_error(
             fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
                         MaxImageEdge, width, height));
-    if (least_bytes(format_of(file), file, width, height) > file.size())
+    if (least_bytes(image_format(file), file, width, height) > file.size())
         throw std::runtime_error(fmt::format("expected the data of {} x {} pixels, got {} bytes",
                                              width, height, file.size()));
     if (!budget.allows(width * height * bytes_per_pixel, file.size()))
@@ -176,7 +157,7 @@ void decode_by_stb(std::span<const std::byte> file, int num_channels, ImageBudge
         throw std::runtime_error(fmt::format(
             "expected a PNG, JPEG, WebP, BMP or TGA image, got {} bytes of something else",
             file.size()));
-    if (format_of(file) == Format::Png)
+    if (image_format(file) == ImageFormat::Png)
         check_png_chunks(file);
     const bool is_16_bit = stbi_is_16_bit_from_memory(bytes, num_bytes) != 0;
     const auto bytes_per_pixel =
@@ -243,12 +224,12 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
             throw std::bad_alloc();
         return image.bytes.get();
     };
-    const Format format = format_of(file);
-    if (format == Format::Jpeg)
+    const ImageFormat format = image_format(file);
+    if (format == ImageFormat::Jpeg)
         files::decode_jpeg(file, allocate);
-    else if (format == Format::WebP)
+    else if (format == ImageFormat::WebP)
         decode_webp(file, num_channels == 4, allocate);
-    else if (format == Format::Avif)
+    else if (format == ImageFormat::Avif)
         decode_avif(file, num_channels, allocate);
     else
         decode_by_stb(file, num_channels, budget, image);
@@ -257,12 +238,27 @@ DecodedImage decode(std::span<const std::byte> file, int num_channels, ImageBudg
 
 } // namespace
 
+ImageFormat image_format(std::span<const std::byte> file) {
+    const auto begins_with = [&](std::string_view magic) {
+        return file.size() >= magic.size() &&
+               std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+    };
+    const bool is_webp =
+        begins_with("RIFF") && file.size() >= 12 && std::memcmp(file.data() + 8, "WEBP", 4) == 0;
+    return begins_with("\x89PNG")        ? ImageFormat::Png
+           : begins_with("\xff\xd8\xff") ? ImageFormat::Jpeg
+           : is_webp                     ? ImageFormat::WebP
+           : files::is_avif(file)        ? ImageFormat::Avif
+           : begins_with("BM")           ? ImageFormat::Bmp
+                                         : ImageFormat::Tga;
+}
+
 DecodedImage decode_image(std::span<const std::byte> file, ImageBudget& budget) {
     return decode(file, 3, budget);
 }
 
 DecodedImage decode_alpha(std::span<const std::byte> file, ImageBudget& budget) {
-    if (format_of(file) == Format::Jpeg) {
+    if (image_format(file) == ImageFormat::Jpeg) {
         DecodedImage image{.width = 1,
                            .height = 1,
                            .bytes = {static_cast<std::uint8_t*>(std::malloc(1)), std::free}};

@@ -13,6 +13,12 @@ namespace relumine::mesh {
 inline constexpr std::uint32_t MaxImageEdge = 16384;
 class ImageBudget;
 
+enum class ImageFormat : std::uint8_t { Png, Jpeg, WebP, Avif, Bmp, Tga };
+
+/// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
+/// mark counts as TGA.
+[[nodiscard]] ImageFormat image_format(std::span<const std::byte> file);
+
 /// A decoded image.
 struct DecodedImage {
     std::uint32_t width = 0;

@@ -35,8 +35,7 @@ public:
     /// it has one, otherwise the hit as it is.
     ///
     /// Cost:    O(log triangles) for a hit on the back of a triangle that lies on another; the
-    /// first
-    ///          hit on a back calls find().
+    ///          first hit on a back calls find().
     [[nodiscard]] Hit facing(const Hit& hit, const glm::vec3& direction) const;
 
     /// Returns the same point on the triangle's twin; none where it has no twin.

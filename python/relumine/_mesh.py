@@ -27,6 +27,13 @@ def warn(texts: List[str]) -> None:
         warnings.warn(in_python(text), RelumineWarning, stacklevel=3)
 
 
+def saved_mesh(path: Path, core: Union[CoreMesh, _core.Scene]) -> List[str]:
+    """Writes a mesh, or a scene's. What to warn of: the file does not hold it."""
+    with errors(path):
+        left_out = _core.save_mesh(os.fsdecode(path), core)
+    return [f"{os.fsdecode(path)}: left out: {what}" for what in left_out]
+
+
 def _screen_colors(mesh: Any, count: int) -> Optional[NDArray[Any]]:
     """Linear colours of trimesh's visual.vertex_colors or Open3D's vertex_colors."""
     visual = getattr(mesh, "visual", None)
@@ -224,9 +231,7 @@ class Mesh:
 
         >>> relumine.Mesh.load("boulder.ply").save("boulder.glb")
         """
-        with errors(path):
-            left_out = _core.save_mesh(os.fsdecode(path), self._core)
-        warn([f"{os.fsdecode(path)}: left out: {what}" for what in left_out])
+        warn(saved_mesh(path, self._core))
 
     @property
     def notes(self) -> List[str]:

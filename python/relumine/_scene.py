@@ -16,7 +16,7 @@ from ._brdf import Brdf
 from ._core import Mesh as CoreMesh
 from ._core import Scene as CoreScene
 from ._files import Path, errors
-from ._mesh import Mesh, warn
+from ._mesh import Mesh, saved_mesh, warn
 
 Color = Union[float, Sequence[float]]
 Progress = Callable[[float], object]
@@ -136,8 +136,8 @@ def precompute(
 ) -> "Scene":
     """Finds how much light from every direction reaches every receiver: once per mesh.
 
-    mesh       a Mesh, the name of its file, a mesh of trimesh or Open3D (Mesh.of()), or an array of vertices (N, 3) with
-               `triangles` (M, 3)
+    mesh       a Mesh, the name of its file, a mesh of trimesh or Open3D (Mesh.of()), or an array of
+               vertices (N, 3) with `triangles` (M, 3)
     tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135; 0.025 where
                vertices were added; 0.1 for points)
     min_depth  every cube face is split at least so often (3; at least 6 for points)
@@ -361,9 +361,7 @@ class Scene:
         """Writes the scene's mesh as Mesh.save(): its vertices are the receivers, where these are
         vertices. As a .glb it is what three.js draws (docs/web.md).
         """
-        with errors(path):
-            left_out = _core.save_mesh(os.fsdecode(path), self._core)
-        warn([f"{os.fsdecode(path)}: left out: {what}" for what in left_out])
+        warn(saved_mesh(path, self._core))
 
     @property
     def num_receivers(self) -> int:

@@ -296,16 +296,10 @@ prt::SceneChange move(Scene& scene, std::span<const GroupMove> to, const Precomp
 std::size_t fresh_clusters(const Scene& scene, const prt::Work& work) {
     require_movable(scene);
     const SceneRays rays(scene);
-    const prt::SceneSettings& settings = scene.settings;
+    prt::PrecomputeOptions options = cluster_options(scene.settings);
     // At the same tolerance, so without a limit that another tolerance would keep.
-    return prt::plan_clusters(scene.receivers, rays.beams(),
-                              {.tolerance = settings.tolerance,
-                               .epsilon = settings.epsilon,
-                               .min_level = settings.min_level,
-                               .face_resolution = settings.face_resolution,
-                               .bias = settings.bias},
-                              work)
-        .num_clusters();
+    options.most_clusters = {};
+    return prt::plan_clusters(scene.receivers, rays.beams(), options, work).num_clusters();
 }
 
 } // namespace relumine

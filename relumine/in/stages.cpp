@@ -106,8 +106,7 @@ void Stages::limit_clusters(const prt::Blockers& blockers, prt::PrecomputeOption
                             megabytes(estimate.peak_bytes), estimate.num_clusters));
 }
 
-prt::PrecomputeOptions Stages::cluster_options() const {
-    const prt::SceneSettings& settings = scene_.settings;
+prt::PrecomputeOptions cluster_options(const prt::SceneSettings& settings) {
     return {.tolerance = settings.tolerance,
             .epsilon = settings.epsilon,
             .most_clusters = settings.most_clusters,
@@ -134,7 +133,7 @@ void Stages::find_clusters(const prt::RayScene& rays, const Find& find) {
     const prt::Blockers& blockers = options_.blockers != nullptr ? *options_.blockers : of_mesh;
     const bool more_follows = scene_.settings.glossy_tolerance || plan_.bounces;
     try {
-        prt::PrecomputeOptions clusters = cluster_options();
+        prt::PrecomputeOptions clusters = cluster_options(scene_.settings);
         limit_clusters(blockers, clusters);
         find(blockers, clusters, work_for(Stage::Clusters, more_follows));
         if (report_.clusters.grown_tolerance > 0.0f)

@@ -21,6 +21,9 @@ namespace relumine {
 void warn(const PrecomputeWork& work, Warning kind, const std::string& message);
 void note(const PrecomputeWork& work, const std::string& message);
 
+/// Returns what a scene's clusters were chosen by.
+[[nodiscard]] prt::PrecomputeOptions cluster_options(const prt::SceneSettings& settings);
+
 /// Clusters, highlights and bounces of the receivers that this process or part has.
 class Stages {
 public:
@@ -60,7 +63,6 @@ private:
     void add_highlights(const prt::RayScene& rays);
 
     [[nodiscard]] prt::SceneSizes sizes() const;
-    [[nodiscard]] prt::PrecomputeOptions cluster_options() const;
     [[nodiscard]] prt::Work work_for(Stage stage, bool more_follows) const;
     [[nodiscard]] MemoryLimitExceeded exceeded(MemoryLimitExceeded::Part part,
                                                const std::string& expected,

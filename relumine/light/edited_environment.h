@@ -24,9 +24,8 @@ using relight::UpdateReport;
 
 /// How an edit ends.
 enum class Ending {
-    /// For a slider while it moves: a turn is that of a map of at most MovingResolution. The rest
-    /// is
-    /// as Quick. Any other edit brings the whole map back.
+    /// As Quick, for a slider while it moves: a turn is that of a map of at most MovingResolution.
+    /// Any other edit brings the whole map back.
     Moving,
     /// With what changed. The last bits may depend on the way to the state.
     Quick,

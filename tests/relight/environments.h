@@ -28,17 +28,29 @@ namespace relumine::scenes {
     return environment;
 }
 
-/// A smooth sky: polynomials of the direction, between 0.1 and 3.
-[[nodiscard]] inline cubemap::CubeMap smooth_environment(std::uint32_t resolution) {
-    cubemap::CubeMap environment(resolution);
+/// Each texel times `factor(direction)`.
+template<typename Factor>
+[[nodiscard]] cubemap::CubeMap times(cubemap::CubeMap environment, const Factor& factor) {
+    const std::uint32_t resolution = environment.resolution;
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < resolution; ++y)
-            for (std::uint32_t x = 0; x < resolution; ++x) {
-                const glm::dvec3 w = cubemap::texel_direction(face, x, y, resolution);
-                environment.at(face, x, y) =
-                    glm::dvec3(1.0 + 0.5 * w.x + 0.4 * w.y * w.z, 1.5 + w.y, 0.2 + w.z * w.z);
-            }
+            for (std::uint32_t x = 0; x < resolution; ++x)
+                environment.at(face, x, y) *=
+                    factor(cubemap::texel_direction(face, x, y, resolution));
     return environment;
+}
+
+/// A sky of radiance `radiance(direction)`.
+template<typename Radiance>
+[[nodiscard]] cubemap::CubeMap sky_of(std::uint32_t resolution, const Radiance& radiance) {
+    return times(cubemap::CubeMap(resolution, glm::vec3(1.0f)), radiance);
+}
+
+/// A smooth sky: polynomials of the direction, between 0.1 and 3.
+[[nodiscard]] inline cubemap::CubeMap smooth_environment(std::uint32_t resolution) {
+    return sky_of(resolution, [](const glm::dvec3& w) {
+        return glm::vec3(glm::dvec3(1.0 + 0.5 * w.x + 0.4 * w.y * w.z, 1.5 + w.y, 0.2 + w.z * w.z));
+    });
 }
 
 /// Every value within `relative` of itself, and (for what is nearly black) of a tenth of the mean.

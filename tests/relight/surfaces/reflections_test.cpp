@@ -114,13 +114,10 @@ TEST(Reflections, OfCoatAndSheenAreTheirIntegral) {
 
 /// Where the sky has detail, rays of a sheen look into their parts, too.
 TEST(Reflections, SheenSeesWhereTheLightComesFrom) {
-    cubemap::CubeMap sky = scenes::smooth_environment(R);
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < R; ++y)
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
-                sky.at(face, x, y) *= w.x < -0.3 && std::sin(40.0 * w.y) > 0.0 ? 20.0f : 0.1f;
-            }
+    const cubemap::CubeMap sky =
+        scenes::times(scenes::smooth_environment(R), [](const glm::dvec3& w) {
+            return w.x < -0.3 && std::sin(40.0 * w.y) > 0.0 ? 20.0f : 0.1f;
+        });
     const Reflections reflections(nothing(), 0.0f, 1024, sky, {});
     for (const float roughness : {0.4f, 0.8f})
         for (const float n_v : {0.9f, 0.4f}) {
@@ -155,14 +152,12 @@ TEST(Reflections, OfAFilmAreTheirIntegral) {
 /// Rays of a stretched lobe against the sum over all texels, which knows nothing of how they are
 /// spread.
 TEST(Reflections, OfAStretchedLobeAreItsIntegral) {
-    cubemap::CubeMap sky = scenes::smooth_environment(R);
     // A gradient along one axis across the normal: what differs between the two roughnesses.
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < R; ++y)
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const float along = static_cast<float>(cubemap::texel_direction(face, x, y, R).x);
-                sky.at(face, x, y) *= 0.1f + 4.0f * along * along;
-            }
+    const cubemap::CubeMap sky =
+        scenes::times(scenes::smooth_environment(R), [](const glm::dvec3& w) {
+            const auto along = static_cast<float>(w.x);
+            return 0.1f + 4.0f * along * along;
+        });
     const Reflections reflections(nothing(), 0.0f, 4096, sky, {});
     for (const float roughness : {0.35f, 0.6f})
         for (const float anisotropy : {0.4f, 0.9f})
@@ -212,30 +207,35 @@ TEST(Reflections, AWhiteSkyHasNoNoise) {
         }
 }
 
-/// Neighbouring pixels, whose rays are shifted, find the same of a window in a dark room.
+/// What neighbouring pixels find, whose rays are shifted against each other.
+struct Grain {
+    double mean = 0.0, deviation = 0.0;
+};
+Grain grain_of(const Reflections& reflections, const prt::Surface& surface, float n_v,
+               const Reflections::Surfaces& surfaces) {
+    double sum = 0.0, square = 0.0;
+    constexpr std::uint32_t NumPixels = 200;
+    for (std::uint32_t i = 0; i < NumPixels; ++i) {
+        MirrorPoint point = seen_at(n_v);
+        point.shift = ray_shift(i);
+        const double found = mirrored(reflections, surface, point, surfaces).specular.g;
+        sum += found / NumPixels;
+        square += found * found / NumPixels;
+    }
+    return {sum, std::sqrt(std::max(square - sum * sum, 0.0))};
+}
+
+/// Neighbouring pixels find the same of a window in a dark room.
 TEST(Reflections, AWindowHasNoGrain) {
-    cubemap::CubeMap room(R);
-    for (cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < R; ++y)
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
-                const bool is_window = w.z > 0.7 && std::abs(w.x + 0.2) < 0.15 && w.y > -0.1;
-                room.at(face, x, y) = glm::vec3(is_window ? 10.0f : 0.1f);
-            }
+    const cubemap::CubeMap room = scenes::sky_of(R, [](const glm::dvec3& w) {
+        return w.z > 0.7 && std::abs(w.x + 0.2) < 0.15 && w.y > -0.1 ? 10.0f : 0.1f;
+    });
     const Reflections reflections(nothing(), 1e-4f, 32, room, {});
     for (const float roughness : {0.3f, 0.4f, 0.6f}) {
-        double sum = 0.0, square = 0.0;
-        constexpr std::uint32_t NumPixels = 200;
-        for (std::uint32_t i = 0; i < NumPixels; ++i) {
-            MirrorPoint point = seen_at(0.95f);
-            point.shift = ray_shift(i);
-            const double found = mirrored(reflections, metal(roughness), point).specular.g;
-            sum += found / NumPixels;
-            square += found * found / NumPixels;
-        }
-        EXPECT_LT(std::sqrt(std::max(square - sum * sum, 0.0)), 0.03 * sum) << roughness;
+        const Grain found = grain_of(reflections, metal(roughness), 0.95f, NoSurface);
+        EXPECT_LT(found.deviation, 0.03 * found.mean) << roughness;
         const double expected = integrated(metal(roughness), seen_at(0.95f), room).specular.g;
-        EXPECT_NEAR(sum, expected, 0.05 * expected) << roughness;
+        EXPECT_NEAR(found.mean, expected, 0.05 * expected) << roughness;
     }
 }
 
@@ -257,13 +257,8 @@ TEST(Reflections, WhereverRaysAreTheTailIsThere) {
 /// All rays of a mirror look at one point of a metal. Together they find its highlight, which has
 /// the edge of a bright half in it.
 TEST(Reflections, AMetalInAMirrorHasNoGrain) {
-    cubemap::CubeMap room(R);
-    for (cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < R; ++y)
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const glm::dvec3 w = cubemap::texel_direction(face, x, y, R);
-                room.at(face, x, y) = glm::vec3(w.y > 0.7 ? 10.0f : 0.1f);
-            }
+    const cubemap::CubeMap room =
+        scenes::sky_of(R, [](const glm::dvec3& w) { return w.y > 0.7 ? 10.0f : 0.1f; });
     const prt::RayScene wall(scenes::box({-2.0f, -1.0f, 0.5f}, {-1.0f, 1.0f, 2.0f}));
     const Reflections reflections(wall, 1e-4f, 16, room, {});
     const auto paint = [&](const MetSurface& met) {
@@ -272,16 +267,8 @@ TEST(Reflections, AMetalInAMirrorHasNoGrain) {
         return reflections.in_mirror(met, metal(0.3f), glm::vec3(50.0f), normal, glm::vec3(0.0f),
                                      NoSurface);
     };
-    double sum = 0.0, square = 0.0;
-    constexpr std::uint32_t NumPixels = 200;
-    for (std::uint32_t i = 0; i < NumPixels; ++i) {
-        MirrorPoint point = seen_at(0.6f);
-        point.shift = ray_shift(i);
-        const double found = mirrored(reflections, metal(0.0f), point, paint).specular.g;
-        sum += found / NumPixels;
-        square += found * found / NumPixels;
-    }
-    EXPECT_LT(std::sqrt(std::max(square - sum * sum, 0.0)), 0.035 * sum);
+    const Grain found = grain_of(reflections, metal(0.0f), 0.6f, paint);
+    EXPECT_LT(found.deviation, 0.035 * found.mean);
 }
 
 TEST(Reflections, AMirrorShowsWhatItLooksAt) {

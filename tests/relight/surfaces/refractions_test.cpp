@@ -303,13 +303,9 @@ glm::vec3 leaves_ball(const glm::vec3& enters, const glm::vec3& direction, float
 /// A rough ball shows the mean of what random ways through it find.
 TEST(Refractions, OfARoughBallAreThoseOfRandomFacets) {
     constexpr float Index = 1.5f;
-    cubemap::CubeMap sky(64), white(8);
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < 64; ++y)
-            for (std::uint32_t x = 0; x < 64; ++x)
-                sky.at(face, x, y) =
-                    glm::vec3(cubemap::texel_direction(face, x, y, 64).y > 0.3 ? 1.0f : 0.1f);
-    white.texels.assign(white.texels.size(), glm::vec3(1.0f));
+    const cubemap::CubeMap sky =
+        scenes::sky_of(64, [](const glm::dvec3& w) { return w.y > 0.3 ? 1.0f : 0.1f; });
+    const cubemap::CubeMap white(8, glm::vec3(1.0f));
     for (const float roughness : {0.3f, 0.6f, 0.9f})
         for (const float height : {-0.4f, 0.1f, 0.7f}) {
             const auto seen = [&](const cubemap::CubeMap& around) {
